@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace coracle::contact
+{
+/// Segment in 2-D, bilinear quadrilateral in 3-D.
+template <int dim>
+constexpr unsigned int vertices_per_facet = (dim == 2 ? 2 : 4);
+
+/// A closed body has material on one side only; a sheet (shell, membrane) meets particles on both.
+enum class SurfaceKind
+{
+  closed,
+  sheet
+};
+
+/// How the points of one body's surface move and resist: what contact knows of a body.
+struct SurfaceBody
+{
+  SurfaceKind kind = SurfaceKind::closed;
+  /// Thickness d; contact distance is R = d/2 + r with the particle's radius r [m].
+  double thickness = 0;
+  /// Coulomb friction coefficient against points [1].
+  double friction = 0;
+  /// Index into the rigid bodies of the unknowns, or -1: facets move with their nodes.
+  int rigid_body = -1;
+};
+
+/// A node of the surface. Several ranks may hold copies; `key` tells that they are the same.
+template <int dim>
+struct SurfaceNode
+{
+  /// Position at the start of the step [m].
+  dealii::Point<dim> position;
+  /// Predicted velocity at the middle of the step, without contact [m/s].
+  dealii::Tensor<1, dim> velocity;
+  /// 1/m per direction, 0 where the motion is prescribed [1/kg].
+  dealii::Tensor<1, dim> inverse_mass;
+  /// Unique over all bodies and ranks.
+  std::uint64_t key = 0;
+  /// Rank that owns it.
+  int owner = 0;
+};
+
+template <int dim>
+struct Facet
+{
+  /// Indices into Surface::nodes. 2-D: the body lies to the left of 0 -> 1, so the outward
+  /// normal is the tangent turned clockwise. 3-D: counter-clockwise seen from outside.
+  /// A triangle repeats its last node.
+  std::array<unsigned int, vertices_per_facet<dim>> nodes;
+  /// Index into Surface::bodies.
+  unsigned int body = 0;
+  /// Unique over ranks; ties between facets are resolved by it.
+  std::uint64_t key = 0;
+};
+
+/// All facets that this rank's points can reach before the next rebuild, with their nodes.
+template <int dim>
+struct Surface
+{
+  /// The same on all ranks.
+  std::vector<SurfaceBody>      bodies;
+  std::vector<SurfaceNode<dim>> nodes;
+  std::vector<Facet<dim>>       facets;
+};
+} // namespace coracle::contact

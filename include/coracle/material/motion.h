@@ -12,7 +12,8 @@ namespace coracle
 template <int dim, typename T>
 struct Motion
 {
-  /// L_ij = dv_i/dx_j at the middle of the step [1/s]; its trace may have been averaged over a cell.
+  /// L_ij = dv_i/dx_j at the middle of the step [1/s]; its trace may have been averaged over a
+  /// cell.
   Matrix<dim, T> velocity_gradient;
   /// F at the end of the step [1]; filled only if Material::needs_deformation_gradient.
   Matrix<dim, T> deformation_gradient;
@@ -32,9 +33,10 @@ struct Motion
  *   static constexpr bool needs_deformation_gradient;
  *   static constexpr int  n_history;                   // doubles a point keeps besides the stress
  *   static void declare(Declaration &);
- *   explicit Material(const Parameters &);
- *   double reference_density() const;
- *   template <typename T> T sound_speed(const T &density) const;       // for the stable step
+ *   static bool accepts(const Parameters &);   // is this the variant that these entries of the
+ * model ask for? explicit Material(const Parameters &); double reference_density() const; template
+ * <typename T> T sound_speed(const T &density) const;       // for the stable step double
+ * diffusivity() const;   // of momentum [m^2/s], for the stable step of viscous flow
  *
  *   // Cauchy stress [Pa], tension positive: in the value at the start of the step, out at its end.
  *   template <int dim, typename T>

@@ -11,13 +11,15 @@ namespace coracle
  * Isotropic linear elasticity in rate form: the Jaumann rate of the Cauchy
  * stress is linear in the rate of deformation, D = sym(L),
  *
- *   sigma_new = R sigma_old R^T + lambda tr(D dt) I + 2 mu D dt,
+ *   sigma_new = R (sigma_old + C/2) R^T + C/2,     C = lambda tr(D dt) I + 2 mu D dt,
  *
  * with R the incremental rotation of Hughes & Winget, so that a rigid rotation
  * of any size turns the stress and adds nothing (with the mid-step gradient,
- * see rotation.h). For small strain and any rotation; at strains beyond some
- * ten per cent the rate form is not the derivative of an energy, and NeoHookean
- * is the better choice. Plane strain keeps sigma_zz.
+ * see rotation.h). Half of the change is added before the rotation and half
+ * after it, which makes stretch and rotation together second order in the step.
+ * For small strain and any rotation; at strains beyond some ten per cent the
+ * rate form is not the derivative of an energy, and NeoHookean is the better
+ * choice. Plane strain keeps sigma_zz.
  *
  * Source: Hughes & Winget, Int. J. Numer. Meth. Engng 15 (1980) 1862.
  */
@@ -49,13 +51,20 @@ public:
   template <int dim, typename T>
   void update(const Motion<dim, T> &motion, Symmetric<dim, T> &stress, T *) const
   {
-    const Symmetric<dim, T> rate = symmetric_part<dim, T>(motion.velocity_gradient);
+    const Symmetric<dim, T> rate        = symmetric_part<dim, T>(motion.velocity_gradient);
+    const T                 mean_change = (0.5 * constants.lambda * motion.dt) * rate.trace();
+    Symmetric<dim, T>       half_change;
+    for (int i = 0; i < stress.size; ++i)
+      half_change[i] = (constants.mu * motion.dt) * rate[i];
+    for (int i = 0; i < 3; ++i)
+      half_change[i] += mean_change;
+
+    for (int i = 0; i < stress.size; ++i)
+      stress[i] += half_change[i];
     stress =
       rotated<dim, T>(stress, incremental_rotation<dim, T>(motion.velocity_gradient, motion.dt));
     for (int i = 0; i < stress.size; ++i)
-      stress[i] += (2. * constants.mu * motion.dt) * rate[i];
-    for (int i = 0; i < 3; ++i)
-      stress[i] += (constants.lambda * motion.dt) * rate.trace();
+      stress[i] += half_change[i];
   }
 
   /// 1/2 sigma : C^-1 : sigma [J/m^3].

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace coracle
+{
+/**
+ * Finds the leaf of a point by integer arithmetic: the coarse cell from the
+ * scaled coordinates, then one bit per direction and level. No geometry is
+ * compared, so a point on a face has exactly one leaf, on every rank the same.
+ */
+template <int dim>
+class LeafTree
+{
+public:
+  static constexpr unsigned int max_levels = 24;
+
+  void reinit(const dealii::Point<dim>            &lower,
+              const double                         coarse_cell_size,
+              const std::array<unsigned int, dim> &n_coarse_cells)
+  {
+    origin = lower;
+    scale  = std::ldexp(1. / coarse_cell_size, max_levels);
+    n      = n_coarse_cells;
+    std::size_t size = 1;
+    for (const unsigned int k : n)
+      size *= k;
+    entries.assign(size, unknown);
+  }
+
+  /// Enter a leaf, `level` bisections below the coarse cell that contains `inside`.
+  void insert(const dealii::Point<dim> &inside, const unsigned int level, const int leaf)
+  {
+    std::array<std::uint64_t, dim> c{};
+    integer_coordinates(inside, c);
+    std::size_t slot = coarse_slot(c);
+    for (unsigned int l = 0; l < level; ++l)
+      {
+        if (entries[slot] == unknown)
+          {
+            const int first = entries.size();
+            entries.resize(entries.size() + (1u << dim), unknown);
+            entries[slot] = -2 - first;
+          }
+        slot = -2 - entries[slot] + child(c, l);
+      }
+    entries[slot] = leaf;
+  }
+
+  int find(const dealii::Point<dim> &point) const
+  {
+    std::array<std::uint64_t, dim> c{};
+    if (!integer_coordinates(point, c))
+      return unknown;
+    int entry = entries[coarse_slot(c)];
+    for (unsigned int l = 0; entry < unknown; ++l)
+      entry = entries[-2 - entry + child(c, l)];
+    return entry;
+  }
+
+private:
+  static constexpr int unknown = -1;
+
+  /// False if the point is outside the box (or not a number).
+  bool integer_coordinates(const dealii::Point<dim> &point, std::array<std::uint64_t, dim> &c) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double        s     = (point[d] - origin[d]) * scale;
+        const std::uint64_t limit = static_cast<std::uint64_t>(n[d]) << max_levels;
+        if (!(s >= 0 && s <= static_cast<double>(limit)))
+          return false;
+        c[d] = std::min(static_cast<std::uint64_t>(s), limit - 1);
+      }
+    return true;
+  }
+
+  std::size_t coarse_slot(const std::array<std::uint64_t, dim> &c) const
+  {
+    std::size_t slot = 0;
+    for (int d = dim - 1; d >= 0; --d)
+      slot = slot * n[d] + (c[d] >> max_levels);
+    return slot;
+  }
+
+  static unsigned int child(const std::array<std::uint64_t, dim> &c, const unsigned int level)
+  {
+    unsigned int result = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      result |= ((c[d] >> (max_levels - 1 - level)) & 1u) << d;
+    return result;
+  }
+
+  dealii::Point<dim>            origin;
+  double                        scale = 1;
+  std::array<unsigned int, dim> n{};
+  /// >= 0: leaf; -1: not known here; below: -2 - index of the first of 2^dim children.
+  std::vector<int> entries;
+};
+} // namespace coracle

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/grid/box_boundary.h>
+#include <coracle/grid/octree.h>
+
+#include <vector>
+
+namespace coracle
+{
+/**
+ * One velocity field on the octree's nodes: what particles gather there, and
+ * how the nodes then move. Bodies of one field meet without slip and without
+ * passing through each other; bodies of different fields do not feel each
+ * other here at all.
+ *
+ * The calls of one step, in order:
+ *   clear, (particles scatter), sum, predict, [contact], distribute,
+ *   clear_momentum, (particles scatter), sum, remap.
+ */
+template <int dim>
+class NodalField
+{
+public:
+  /// Places in a gathered record: mass [kg], momentum [kg m/s], force [N].
+  struct Gathered
+  {
+    static constexpr unsigned int mass = 0, momentum = 1, force = 1 + dim;
+  };
+  /// Places in a motion record: velocity at the end of the step [m/s], its change over the step
+  /// [m/s], mass [kg].
+  struct Motion
+  {
+    static constexpr unsigned int velocity = 0, change = dim, mass = 6;
+  };
+
+  NodalField(const Octree<dim> &octree, const BoxBoundary<dim> &boundary);
+
+  NodeRecords &gathered() { return records; }
+  const NodeRecords &motion() const { return motions; }
+
+  void clear();
+  /// Hanging nodes give what they have to their parents, ghosts to their owners.
+  void sum();
+  /// v = p/m; v += dt (f/m + g); conditions of the box; owned nodes, then everybody's copies.
+  void predict(const double dt, const dealii::Tensor<1, dim> &gravity);
+  /// Ghosts and hanging nodes follow owned ones.
+  void distribute();
+
+  /// Contact impulses [N s] and position corrections [kg m] of this rank, added on any local
+  /// non-hanging nodes, then applied on all ranks (collective).
+  void add_impulse(const unsigned int            node,
+                   const dealii::Tensor<1, dim> &impulse,
+                   const dealii::Tensor<1, dim> &correction);
+  void apply_impulses();
+  /// Position correction of nodes over this step [m], and whether there is any on this rank.
+  bool                           has_shift() const { return !shifted_nodes.empty(); }
+  const dealii::Tensor<1, dim>  &shift(const unsigned int node) const { return shifts[node]; }
+  bool                           is_shifted(const unsigned int node) const { return shifted[node]; }
+
+  /// For the second gathering of momentum (MUSL): keeps the masses.
+  void clear_momentum();
+  /// v2 = p/m with the conditions of the box, in the momentum's place; hanging nodes and ghosts too.
+  void remap();
+
+  /// 1/m per direction, 0 where the box fixes the node or no mass is near.
+  dealii::Tensor<1, dim> inverse_mass(const unsigned int node) const;
+  dealii::Tensor<1, dim> velocity(const unsigned int node) const;
+
+  /// Momentum sum over owned, non-hanging nodes of this rank [N s].
+  dealii::Tensor<1, dim> momentum() const;
+  std::size_t            memory_consumption() const;
+
+private:
+  void condense(NodeRecords &r) const;
+  void interpolate_hanging(NodeRecords &r) const;
+
+  const Octree<dim>                  &octree;
+  const BoxBoundary<dim>             &boundary;
+  NodeRecords                         records, motions, impulses;
+  std::vector<unsigned int>           touched;
+  std::vector<dealii::Tensor<1, dim>> shifts;
+  std::vector<unsigned char>          shifted;
+  std::vector<unsigned int>           shifted_nodes;
+};
+} // namespace coracle

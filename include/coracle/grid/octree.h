@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/base/mpi.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_q.h>
+
+#include <coracle/base/parameters.h>
+#include <coracle/grid/leaf_tree.h>
+#include <coracle/grid/node_exchange.h>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace coracle
+{
+/// A region in which cells are refined to a level above the base cells.
+template <int dim>
+struct RefinementBox
+{
+  dealii::BoundingBox<dim> box;
+  unsigned int             level;
+};
+
+/// What the octree is made from.
+template <int dim>
+struct OctreeDescription
+{
+  dealii::BoundingBox<dim>        box;
+  double                          cell_size;
+  std::vector<RefinementBox<dim>> refinements;
+
+  static void declare(Declaration &grid_section);
+  /// Refuses a box that is not a whole number of cells, naming the nearest that is.
+  static OctreeDescription read(const Parameters &grid_section);
+};
+
+/**
+ * The background grid: a box of square or cubic cells, refined locally, 2:1
+ * balanced, shared out among the ranks by p4est.
+ *
+ * Cells known to this rank are *leaves*: first the locally owned ones along
+ * the space-filling curve, then the ghosts. Their corners are *nodes* with
+ * local indices: first the locally owned ones, then the ghosts. All hot loops
+ * use these two numberings and plain arrays; deal.II's objects stay available
+ * for output, refinement and weights.
+ *
+ * The coarse mesh, which p4est replicates on every rank, has the largest cells
+ * that fit the box by bisection from the base cells.
+ */
+template <int dim>
+class Octree
+{
+public:
+  static constexpr unsigned int n_corners = 1u << dim;
+
+  /// A hanging node is the weighted mean of its parents, none of which hangs itself.
+  struct HangingNode
+  {
+    unsigned int                                      node;
+    std::vector<std::pair<unsigned int, double>>      parents;
+  };
+
+  /**
+   * @param weight work expected in a cell, from its centre and size, >= 0 (1 for a cell with
+   *        nothing in it is added); decides the partition. May be empty.
+   */
+  Octree(const OctreeDescription<dim>                                       &description,
+         const std::function<double(const dealii::Point<dim> &, const double)> &weight,
+         MPI_Comm                                                            communicator);
+
+  unsigned int n_owned_leaves() const { return n_owned; }
+  unsigned int n_leaves() const { return leaf_nodes.size(); }
+  unsigned int n_owned_nodes() const { return exchange.n_owned(); }
+  unsigned int n_nodes() const { return positions.size(); }
+
+  /// Corner nodes, x fastest.
+  const std::array<unsigned int, n_corners> &nodes(const unsigned int leaf) const
+  {
+    return leaf_nodes[leaf];
+  }
+  /// Lower corner [m], edge length [m], owner.
+  const dealii::Point<dim> &lower(const unsigned int leaf) const { return leaf_lower[leaf]; }
+  double                    size(const unsigned int leaf) const { return leaf_size[leaf]; }
+  int                       owner(const unsigned int leaf) const { return leaf_owner[leaf]; }
+
+  /// Leaf that contains the point, or -1 if it is outside the box or in no leaf this rank knows.
+  /// Lower faces belong to a cell, upper ones to its neighbour; the box itself is closed.
+  int find(const dealii::Point<dim> &point) const { return tree.find(point); }
+
+  const dealii::Point<dim> &position(const unsigned int node) const { return positions[node]; }
+  /// Global number, the same on all ranks.
+  dealii::types::global_dof_index global_node(const unsigned int node) const;
+  int                             node_owner(const unsigned int node) const;
+
+  const std::vector<HangingNode> &hanging_nodes() const { return hanging; }
+  /// True if some ghost leaf has a hanging node whose parents this rank does not know: what is
+  /// gathered there must go to its owner before it is condensed.
+  bool has_remote_hanging_nodes() const { return remote_hanging; }
+  /// Index into hanging_nodes(), or -1.
+  int hanging_index(const unsigned int node) const { return node_to_hanging[node]; }
+
+  const dealii::BoundingBox<dim> &box() const { return description.box; }
+  double                          smallest_cell_size() const;
+
+  NodeExchange                                            exchange;
+  dealii::parallel::distributed::Triangulation<dim>       triangulation;
+  dealii::DoFHandler<dim>                                 dof_handler;
+  /// For output: leaf of deal.II's active cell index, or -1.
+  std::vector<int>                                        leaf_of_active_cell;
+
+  std::size_t memory_consumption() const;
+
+private:
+  void make_grid();
+  void partition(const std::function<double(const dealii::Point<dim> &, const double)> &weight);
+  void enumerate();
+  void make_hanging_nodes();
+
+  OctreeDescription<dim>                           description;
+  std::vector<unsigned int>                        n_coarse_cells;
+  unsigned int                                     base_level = 0;
+  dealii::FE_Q<dim>                                fe;
+  LeafTree<dim>                                    tree;
+  unsigned int                                     n_owned = 0;
+  std::vector<std::array<unsigned int, n_corners>> leaf_nodes;
+  std::vector<dealii::Point<dim>>                  leaf_lower;
+  std::vector<double>                              leaf_size;
+  std::vector<int>                                 leaf_owner;
+  std::vector<dealii::Point<dim>>                  positions;
+  std::vector<HangingNode>                         hanging;
+  std::vector<int>                                 node_to_hanging;
+  bool                                             remote_hanging = false;
+};
+} // namespace coracle

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/grid/locate.h>
+#include <coracle/grid/transfer.h>
+
+#include <map>
+#include <sstream>
+
+namespace coracle
+{
+namespace
+{
+template <int dim>
+using Layout = ParticleLayout<dim>;
+
+template <int dim>
+[[noreturn]] void
+fail_lost(const MaterialPoints<dim> &points, const std::size_t row, const std::string &what, const double time)
+{
+  std::ostringstream details;
+  details.precision(6);
+  details << "particle " << points.id(row) << " of '" << points.name() << "' at ("
+          << points.position(row) << ") m, t = " << time << " s, velocity (";
+  for (int d = 0; d < dim; ++d)
+    details << (d > 0 ? " " : "") << points.column(Layout<dim>::velocity + d)[row];
+  details << ") m/s: " << what;
+  throw RunFailure("a particle left the box",
+                   details.str(),
+                   "enlarge the box, make the face open, or lower the time step's safety factor");
+}
+
+// Rows that are not wholly in their home cell any more, in order; positions are updated on the way.
+template <int dim>
+std::vector<unsigned int>
+take_positions(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
+{
+  std::vector<unsigned int> leavers;
+  unsigned int              last = 0;
+  for (const unsigned int leaf : points.occupied_cells())
+    {
+      const unsigned int end = points.cell_begin()[leaf + 1];
+      for (unsigned int row = points.cell_begin()[leaf]; row < end; row += pack_size)
+        {
+          const int                n_lanes = std::min<unsigned int>(pack_size, end - row);
+          const Vector<dim, Pack8> next    = load_vector(points, Layout<dim>::next_position, row);
+          for (int d = 0; d < dim; ++d)
+            store_first(points.column(Layout<dim>::position + d) + row, next[d], n_lanes);
+          const Pack8 margin = margin_of_shape * load<Pack8>(points.column(Layout<dim>::size) + row);
+          const Mask8 inside = inside_cell<dim>(next, octree.lower(leaf), octree.size(leaf), margin);
+          for (int l = 0; l < n_lanes; ++l)
+            if (__builtin_expect(inside[l] == 0, 0))
+              leavers.push_back(row + l);
+        }
+      last = end;
+    }
+  for (unsigned int row = last; row < points.n_rows(); ++row)
+    {
+      for (int d = 0; d < dim; ++d)
+        points.column(Layout<dim>::position + d)[row] =
+          points.column(Layout<dim>::next_position + d)[row];
+      leavers.push_back(row);
+    }
+  return leavers;
+}
+
+constexpr int tag_migration = 7310;
+
+// Neighbours are the ranks that own ghost leaves; each gets one message a step, possibly empty.
+template <int dim>
+unsigned int
+exchange_rows(const Octree<dim>                        &octree,
+              const std::map<int, std::vector<double>> &outgoing,
+              MaterialPoints<dim>                      &points)
+{
+  const MPI_Comm                    comm       = octree.triangulation.get_communicator();
+  const auto                       &neighbours = octree.triangulation.ghost_owners();
+  std::vector<MPI_Request>          requests;
+  static const std::vector<double>  nothing;
+  for (const int rank : neighbours)
+    {
+      const auto  found = outgoing.find(rank);
+      const auto &rows  = found == outgoing.end() ? nothing : found->second;
+      requests.emplace_back();
+      MPI_Isend(rows.data(), rows.size(), MPI_DOUBLE, rank, tag_migration, comm, &requests.back());
+    }
+  unsigned int        received = 0;
+  const unsigned int  width    = points.columns.n_columns();
+  std::vector<double> rows;
+  for (const int rank : neighbours)
+    {
+      MPI_Status status;
+      MPI_Probe(rank, tag_migration, comm, &status);
+      int count = 0;
+      MPI_Get_count(&status, MPI_DOUBLE, &count);
+      rows.resize(count);
+      MPI_Recv(rows.data(), count, MPI_DOUBLE, rank, tag_migration, comm, MPI_STATUS_IGNORE);
+      for (int first = 0; first < count; first += width, ++received)
+        points.append(rows.data() + first);
+    }
+  MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+  return received;
+}
+} // namespace
+
+template <int dim>
+unsigned int
+move_and_locate(const Octree<dim>      &octree,
+                const BoxBoundary<dim> &boundary,
+                const double            margin_of_shape,
+                const double            time,
+                MaterialPoints<dim>    &points)
+{
+  const std::vector<unsigned int>    leavers = take_positions(octree, margin_of_shape, points);
+  std::map<int, std::vector<double>> outgoing;
+  points.strays.clear();
+  for (const unsigned int row : leavers)
+    {
+      if (points.is_hole(row))
+        continue;
+      const dealii::Point<dim> x    = points.position(row);
+      const int                leaf = octree.find(x);
+      if (leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves()))
+        points.strays.push_back({row, leaf});
+      else if (leaf >= 0)
+        {
+          auto &buffer = outgoing[octree.owner(leaf)];
+          buffer.resize(buffer.size() + points.columns.n_columns());
+          points.columns.get_row(row, buffer.data() + buffer.size() - points.columns.n_columns());
+          points.remove(row);
+        }
+      else
+        {
+          const unsigned int face = boundary.face_left(x);
+          if (!std::isfinite(x.norm()))
+            fail_lost(points, row, "its position is not a number", time);
+          if (octree.box().point_inside(x))
+            fail_lost(points, row, "it crossed more than a whole cell in one step", time);
+          if (boundary.condition(face) != FaceCondition::open)
+            fail_lost(points, row, "face '" + BoxBoundary<dim>::face_name(face) + "' is not open", time);
+          points.remove(row);
+          ++points.ledger.removed;
+        }
+    }
+  const unsigned int first    = points.n_rows();
+  const unsigned int received = exchange_rows(octree, outgoing, points);
+  for (unsigned int row = first; row < points.n_rows(); ++row)
+    points.strays.push_back({row, octree.find(points.position(row))});
+  return received;
+}
+
+template <int dim>
+void
+sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
+{
+  std::vector<int> cell(points.n_rows(), 0);
+  for (const unsigned int leaf : points.occupied_cells())
+    std::fill(cell.begin() + points.cell_begin()[leaf],
+              cell.begin() + points.cell_begin()[leaf + 1],
+              leaf);
+  // Everything behind the sorted rows was appended; right after generation that is all.
+  for (std::size_t row = points.cell_begin().back(); row < points.n_rows(); ++row)
+    if (!points.is_hole(row))
+      cell[row] = octree.find(points.position(row));
+  for (const auto &stray : points.strays)
+    cell[stray.row] = stray.leaf;
+  points.sort(octree.n_owned_leaves(), cell);
+
+  // A GIMP particle that reaches into a neighbour is a stray even in its home cell.
+  if (margin_of_shape > 0)
+    for (const unsigned int leaf : points.occupied_cells())
+      for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
+        {
+          const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
+          bool         inside = true;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double x = points.column(Layout<dim>::position + d)[row];
+              inside = inside && x - margin >= octree.lower(leaf)[d] &&
+                       x + margin < octree.lower(leaf)[d] + octree.size(leaf);
+            }
+          if (!inside)
+            points.strays.push_back({row, static_cast<int>(leaf)});
+        }
+}
+
+#define INSTANTIATE(dim)                                                                    \
+  template unsigned int move_and_locate(                                                    \
+    const Octree<dim> &, const BoxBoundary<dim> &, const double, const double, MaterialPoints<dim> &); \
+  template void sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
+
+INSTANTIATE(2)
+INSTANTIATE(3)
+} // namespace coracle

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/dofs/dof_renumbering.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <deal.II/lac/affine_constraints.h>
+
+#include <coracle/grid/octree.h>
+
+#include <numeric>
+#include <sstream>
+
+namespace coracle
+{
+template <int dim>
+Octree<dim>::Octree(const OctreeDescription<dim>                                         &description,
+                    const std::function<double(const dealii::Point<dim> &, const double)> &weight,
+                    MPI_Comm                                                              communicator)
+  : triangulation(communicator,
+                  dealii::Triangulation<dim>::none,
+                  dealii::parallel::distributed::Triangulation<dim>::default_setting)
+  , dof_handler(triangulation)
+  , description(description)
+  , fe(1)
+{
+  make_grid();
+  if (weight)
+    partition(weight);
+  dof_handler.distribute_dofs(fe);
+  dealii::DoFRenumbering::hierarchical(dof_handler);
+  enumerate();
+  make_hanging_nodes();
+}
+
+template <int dim>
+void
+Octree<dim>::make_grid()
+{
+  const auto &[lower, upper] = description.box.get_boundary_points();
+  std::vector<unsigned int> n_cells(dim);
+  for (unsigned int d = 0; d < dim; ++d)
+    n_cells[d] = std::lround((upper[d] - lower[d]) / description.cell_size);
+  n_coarse_cells = n_cells;
+  const auto all_even = [&] {
+    return std::all_of(n_coarse_cells.begin(), n_coarse_cells.end(), [](const unsigned int n) {
+      return n % 2 == 0;
+    });
+  };
+  while (all_even())
+    {
+      for (unsigned int &n : n_coarse_cells)
+        n /= 2;
+      ++base_level;
+    }
+  dealii::GridGenerator::subdivided_hyper_rectangle(
+    triangulation, n_coarse_cells, lower, upper, true);
+  triangulation.refine_global(base_level);
+
+  for (bool changed = true; changed;)
+    {
+      changed = false;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const auto &refinement : description.refinements)
+            {
+              // A cell that only touches the region from outside stays as it is.
+              dealii::BoundingBox<dim> region = refinement.box;
+              region.extend(-1e-6 * cell->extent_in_direction(0));
+              if (cell->level() < static_cast<int>(base_level + refinement.level) &&
+                  cell->bounding_box().get_neighbor_type(region) !=
+                    dealii::NeighborType::not_neighbors)
+                {
+                  cell->set_refine_flag();
+                  changed = true;
+                }
+            }
+      changed = dealii::Utilities::MPI::logical_or(changed, triangulation.get_communicator());
+      if (changed)
+        triangulation.execute_coarsening_and_refinement();
+    }
+}
+
+template <int dim>
+void
+Octree<dim>::partition(
+  const std::function<double(const dealii::Point<dim> &, const double)> &weight)
+{
+  using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
+  const auto connection =
+    triangulation.signals.weight.connect([&](const typename Triangulation::cell_iterator &cell,
+                                             const typename Triangulation::CellStatus) {
+      return static_cast<unsigned int>(
+        1000. * weight(cell->center(), cell->extent_in_direction(0)));
+    });
+  triangulation.repartition();
+  connection.disconnect();
+}
+
+template <int dim>
+void
+Octree<dim>::enumerate()
+{
+  // Order of the space-filling curve: coarse cell, then child by child.
+  using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+  std::vector<Cell> cells;
+  for (const auto &cell : dof_handler.active_cell_iterators())
+    if (!cell->is_artificial())
+      cells.push_back(cell);
+  const auto curve = [](const Cell &a, const Cell &b) {
+    if (a->is_locally_owned() != b->is_locally_owned())
+      return a->is_locally_owned();
+    return a->id() < b->id();
+  };
+  std::sort(cells.begin(), cells.end(), curve);
+
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+  exchange.reinit(dof_handler.locally_owned_dofs(), relevant, triangulation.get_communicator());
+  positions.resize(exchange.n_owned() + exchange.n_ghosts());
+
+  std::array<unsigned int, dim> n;
+  std::copy(n_coarse_cells.begin(), n_coarse_cells.end(), n.begin());
+  const auto  &corners     = description.box.get_boundary_points();
+  const double coarse_size = std::ldexp(description.cell_size, base_level);
+  tree.reinit(corners.first, coarse_size, n);
+
+  leaf_of_active_cell.assign(triangulation.n_active_cells(), -1);
+  std::vector<dealii::types::global_dof_index> dofs(n_corners);
+  for (const Cell &cell : cells)
+    {
+      const unsigned int leaf = leaf_nodes.size();
+      n_owned += cell->is_locally_owned();
+      cell->get_dof_indices(dofs);
+      leaf_nodes.emplace_back();
+      for (unsigned int c = 0; c < n_corners; ++c)
+        {
+          leaf_nodes.back()[c]            = exchange.indices().global_to_local(dofs[c]);
+          positions[leaf_nodes.back()[c]] = cell->vertex(c);
+        }
+      leaf_lower.push_back(cell->vertex(0));
+      leaf_size.push_back(std::ldexp(coarse_size, -cell->level()));
+      leaf_owner.push_back(cell->subdomain_id());
+      leaf_of_active_cell[cell->active_cell_index()] = leaf;
+      tree.insert(cell->center(), cell->level(), leaf);
+    }
+}
+
+template <int dim>
+void
+Octree<dim>::make_hanging_nodes()
+{
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+  dealii::AffineConstraints<double> constraints(relevant);
+  dealii::DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+  constraints.close();
+  node_to_hanging.assign(n_nodes(), -1);
+  for (const auto &line : constraints.get_lines())
+    {
+      if (!relevant.is_element(line.index))
+        continue;
+      HangingNode node;
+      node.node = exchange.indices().global_to_local(line.index);
+      for (const auto &[parent, weight] : line.entries)
+        {
+          // Only nodes on the far side of ghost leaves can have parents out of reach.
+          if (!relevant.is_element(parent))
+            {
+              node.parents.clear();
+              break;
+            }
+          node.parents.emplace_back(exchange.indices().global_to_local(parent), weight);
+        }
+      if (node.parents.empty())
+        {
+          remote_hanging = true;
+          continue;
+        }
+      node_to_hanging[node.node] = hanging.size();
+      hanging.push_back(std::move(node));
+    }
+  remote_hanging =
+    dealii::Utilities::MPI::logical_or(remote_hanging, triangulation.get_communicator());
+}
+
+template <int dim>
+dealii::types::global_dof_index
+Octree<dim>::global_node(const unsigned int node) const
+{
+  return exchange.indices().local_to_global(node);
+}
+
+template <int dim>
+int
+Octree<dim>::node_owner(const unsigned int node) const
+{
+  return exchange.owner(node);
+}
+
+template <int dim>
+double
+Octree<dim>::smallest_cell_size() const
+{
+  const double mine = *std::min_element(leaf_size.begin(), leaf_size.end());
+  return dealii::Utilities::MPI::min(mine, triangulation.get_communicator());
+}
+
+template <int dim>
+std::size_t
+Octree<dim>::memory_consumption() const
+{
+  return triangulation.memory_consumption() + dof_handler.memory_consumption() +
+         leaf_nodes.size() * (sizeof(leaf_nodes[0]) + sizeof(leaf_lower[0]) + 16) +
+         positions.size() * (sizeof(positions[0]) + 4);
+}
+
+template class Octree<2>;
+template class Octree<3>;
+} // namespace coracle

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/point.h>
+
+#include <coracle/particles/material_points.h>
+
+namespace coracle
+{
+template <int dim>
+MaterialPoints<dim>::MaterialPoints(const std::string &name, const ParticleNeeds &needs)
+  : columns(ParticleLayout<dim>(needs).n_columns)
+  , body_name(name)
+  , columns_layout(needs)
+  , begins(1, 0)
+{}
+
+template <int dim>
+dealii::Point<dim>
+MaterialPoints<dim>::position(const std::size_t row) const
+{
+  dealii::Point<dim> result;
+  for (unsigned int d = 0; d < dim; ++d)
+    result[d] = columns[Layout::position + d][row];
+  return result;
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::sort(const unsigned int n_cells, const std::vector<int> &cell)
+{
+  AssertDimension(cell.size(), n_rows());
+  begins.assign(n_cells + 1, 0);
+  for (std::size_t row = 0; row < n_rows(); ++row)
+    if (!is_hole(row))
+      ++begins[cell[row] + 1];
+  occupied.clear();
+  for (unsigned int c = 0; c < n_cells; ++c)
+    {
+      if (begins[c + 1] > 0)
+        occupied.push_back(c);
+      begins[c + 1] += begins[c];
+    }
+  source.resize(n_particles());
+  for (std::size_t row = 0; row < n_rows(); ++row)
+    if (!is_hole(row))
+      source[begins[cell[row]]++] = row;
+  // The loop above moved each begin to its end: shift back.
+  for (unsigned int c = n_cells; c > 0; --c)
+    begins[c] = begins[c - 1];
+  begins[0] = 0;
+  columns.reorder(source);
+  n_holes = 0;
+  strays.clear();
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::append(const double *const row)
+{
+  columns.resize(n_rows() + 1);
+  columns.set_row(n_rows() - 1, row);
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::remove(const std::size_t row)
+{
+  Assert(!is_hole(row), dealii::ExcInternalError());
+  columns[Layout::mass][row] = 0;
+  for (unsigned int d = 0; d < dim; ++d)
+    columns[Layout::velocity + d][row] = 0;
+  ++n_holes;
+}
+
+template <int dim>
+double
+MaterialPoints<dim>::kinetic_energy() const
+{
+  double result = 0;
+  for (std::size_t row = 0; row < n_rows(); ++row)
+    {
+      double square = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        square += columns[Layout::velocity + d][row] * columns[Layout::velocity + d][row];
+      result += 0.5 * columns[Layout::mass][row] * square;
+    }
+  return result;
+}
+
+template <int dim>
+double
+MaterialPoints<dim>::mass() const
+{
+  double result = 0;
+  for (std::size_t row = 0; row < n_rows(); ++row)
+    result += columns[Layout::mass][row];
+  return result;
+}
+
+template class MaterialPoints<2>;
+template class MaterialPoints<3>;
+} // namespace coracle

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/io/disk.h>
+#include <coracle/io/text.h>
+#include <coracle/io/vtu_file.h>
+#include <coracle/io/vtu_series.h>
+
+namespace coracle
+{
+VtuSeries::VtuSeries(const OutputDirectory &directory,
+                     const std::string     &file_part,
+                     const bool             single_precision)
+  : folder(directory.path())
+  , name(file_part)
+  , single_precision(single_precision)
+  , comm(directory.communicator())
+{}
+
+void
+VtuSeries::write(const double time, const VtuPiece &piece)
+{
+  const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(comm);
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
+  const std::string  stem    = name + "." + six_digits(entries.size());
+
+  std::vector<std::string> pieces;
+  for (unsigned int r = 0; r < n_ranks; ++r)
+    pieces.push_back(stem + "." + std::to_string(r) + ".vtu");
+  // A single piece needs no file that joins it.
+  const std::string opened = (n_ranks == 1 ? pieces[0] : stem + ".pvtu");
+  entries.emplace_back(time, "data/" + opened);
+
+  std::string problem =
+    write_file(folder + "/data/" + pieces[rank], vtu_text(piece, single_precision));
+  if (problem.empty() && rank == 0 && n_ranks > 1)
+    problem = write_file(folder + "/data/" + opened, pvtu_text(piece, pieces, single_precision));
+  if (problem.empty() && rank == 0)
+    problem = write_file(folder + "/" + name + ".pvd", pvd_text(entries));
+  throw_if_any(problem, comm);
+}
+} // namespace coracle

@@ -204,6 +204,7 @@ private:
     for (int l = n_lanes; l < pack_size; ++l)
       counted[l] = 0;
     const Pack8 rate = (material.sound_speed(motion.density) + sqrt(square)) / size;
+    result.kinetic += sum(select(counted, Pack8(0.5 * mass * square), Pack8{}));
     result.work += sum(select(counted, Pack8(dt * mid_volume * power), Pack8{}));
     const Pack8 counted_rate    = select(counted, rate, Pack8{});
     const Pack8 counted_density = select(counted, motion.density, splat<Pack8>(1e300));

@@ -85,8 +85,8 @@ template <int dim>
 void
 NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
 {
-  const unsigned int n = octree.n_owned_nodes();
-  for (unsigned int i = 0; i < n; ++i)
+  books = Energies();
+  for (unsigned int i = 0; i < octree.n_owned_nodes(); ++i)
     {
       const NodeRecord &r = records[i];
       NodeRecord       &m = motions[i];
@@ -97,22 +97,37 @@ NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
       const double inverse = 1. / mass;
       for (unsigned int d = 0; d < dim; ++d)
         {
-          m[Motion::change + d] = dt * (r[Gathered::force + d] * inverse + gravity[d]);
-          m[Motion::velocity + d] =
-            r[Gathered::momentum + d] * inverse + m[Motion::change + d];
+          const double before = r[Gathered::momentum + d] * inverse;
+          const double change = dt * (r[Gathered::force + d] * inverse + gravity[d]);
+          m[Motion::change + d]   = change;
+          m[Motion::velocity + d] = before + change;
+          books.gathered += 0.5 * mass * before * before;
+          books.gravity += mass * dt * gravity[d] * (before + 0.5 * change);
+          books.given += 0.5 * mass * (before + change) * (before + change);
         }
       m[Motion::mass] = mass;
     }
+  fix_boundary_nodes();
+  distribute();
+}
+
+template <int dim>
+void
+NodalField<dim>::fix_boundary_nodes()
+{
   for (const unsigned int i : boundary.fixed_nodes())
-    if (i < n)
+    if (i < octree.n_owned_nodes())
       for (unsigned int d = 0; d < dim; ++d)
         if (boundary.fixed(i) & (1u << d))
           {
             // The change takes what particles brought here, so that they stop as well.
-            motions[i][Motion::change + d] -= motions[i][Motion::velocity + d];
-            motions[i][Motion::velocity + d] = 0;
+            NodeRecord  &m     = motions[i];
+            const double taken = 0.5 * m[Motion::mass] * m[Motion::velocity + d] * m[Motion::velocity + d];
+            books.boundary += taken;
+            books.given -= taken;
+            m[Motion::change + d] -= m[Motion::velocity + d];
+            m[Motion::velocity + d] = 0;
           }
-  distribute();
 }
 
 template <int dim>
@@ -144,8 +159,16 @@ NodalField<dim>::apply_impulses()
     NodeRecord                  &r       = impulses[node];
     const dealii::Tensor<1, dim> inverse = inverse_mass(node);
     bool                         moves   = false;
+    const bool                   owned   = node < octree.n_owned_nodes();
     for (unsigned int d = 0; d < dim; ++d)
       {
+        if (owned && inverse[d] > 0)
+          {
+            const double work =
+              r[d] * (motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d]);
+            books.contact += work;
+            books.given += work;
+          }
         motions[node][Motion::velocity + d] += r[d] * inverse[d];
         motions[node][Motion::change + d] += r[d] * inverse[d];
         shifts[node][d] = r[dim + d] * inverse[d];
@@ -168,6 +191,13 @@ NodalField<dim>::apply_impulses()
   touched.clear();
 
   interpolate_hanging(motions);
+  shift_hanging_nodes();
+}
+
+template <int dim>
+void
+NodalField<dim>::shift_hanging_nodes()
+{
   for (const auto &hanging : octree.hanging_nodes())
     {
       dealii::Tensor<1, dim> shift;

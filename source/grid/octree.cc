@@ -199,10 +199,26 @@ Octree<dim>::node_owner(const unsigned int node) const
 }
 
 template <int dim>
+dealii::BoundingBox<dim>
+Octree<dim>::owned_region() const
+{
+  auto lower = description.box.get_boundary_points().first, upper = lower;
+  for (unsigned int leaf = 0; leaf < n_owned; ++leaf)
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        lower[d] = leaf == 0 ? leaf_lower[0][d] : std::min(lower[d], leaf_lower[leaf][d]);
+        upper[d] = std::max(upper[d], leaf_lower[leaf][d] + leaf_size[leaf]);
+      }
+  return dealii::BoundingBox<dim>(std::make_pair(lower, upper));
+}
+
+template <int dim>
 double
 Octree<dim>::smallest_cell_size() const
 {
-  const double mine = *std::min_element(leaf_size.begin(), leaf_size.end());
+  double mine = std::numeric_limits<double>::max();
+  for (const double size : leaf_size)
+    mine = std::min(mine, size);
   return dealii::Utilities::MPI::min(mine, triangulation.get_communicator());
 }
 

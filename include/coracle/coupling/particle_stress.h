@@ -20,6 +20,8 @@ struct StressSweep
 {
   /// Stress power times step, with the mean of old and new stress [J].
   double work = 0;
+  /// Kinetic energy of the particles [J].
+  double kinetic = 0;
   /// Largest (wave speed + particle speed) / cell size [1/s]; its inverse bounds the step.
   double rate = 0;
   /// Largest diffusivity / cell size^2 [1/s].

@@ -42,6 +42,17 @@ public:
   void clear();
   /// Hanging nodes give what they have to their parents, ghosts to their owners.
   void sum();
+  /// What happened to this rank's share of the kinetic energy on the grid in this step [J].
+  struct Energies
+  {
+    double gathered = 0; ///< p^2/2m as gathered from particles
+    double gravity  = 0; ///< brought by gravity
+    double boundary = 0; ///< taken at the faces of the box
+    double contact  = 0; ///< brought by contact impulses
+    double given    = 0; ///< m v^2/2 at the end, as particles find it
+  };
+  const Energies &energies() const { return books; }
+
   /// v = p/m; v += dt (f/m + g); conditions of the box; owned nodes, then everybody's copies.
   void predict(const double dt, const dealii::Tensor<1, dim> &gravity);
   /// Ghosts and hanging nodes follow owned ones.
@@ -72,6 +83,8 @@ public:
   std::size_t            memory_consumption() const;
 
 private:
+  void   fix_boundary_nodes();
+  void   shift_hanging_nodes();
   void condense(NodeRecords &r) const;
   void interpolate_hanging(NodeRecords &r) const;
 
@@ -82,5 +95,6 @@ private:
   std::vector<dealii::Tensor<1, dim>> shifts;
   std::vector<unsigned char>          shifted;
   std::vector<unsigned int>           shifted_nodes;
+  Energies                            books;
 };
 } // namespace coracle

@@ -107,7 +107,9 @@ public:
   int hanging_index(const unsigned int node) const { return node_to_hanging[node]; }
 
   const dealii::BoundingBox<dim> &box() const { return description.box; }
-  double                          smallest_cell_size() const;
+  /// Box around this rank's leaves; empty box at the lower corner if it has none.
+  dealii::BoundingBox<dim> owned_region() const;
+  double                   smallest_cell_size() const;
 
   NodeExchange                                            exchange;
   dealii::parallel::distributed::Triangulation<dim>       triangulation;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/coupling/particle_stress.h>
+#include <coracle/material/library.h>
+#include <coracle/particles/material_points.h>
+
+#include <memory>
+#include <string>
+
+namespace coracle
+{
+/// When in a step stresses are updated: with the velocities at its start (USF), at its end (USL), or
+/// at its end with velocities gathered again from the particles (MUSL, Sulsky et al. 1995).
+enum class StressUpdate
+{
+  usf,
+  usl,
+  musl
+};
+
+/**
+ * A body of material points as its section of the parameter file describes it,
+ * with its particles on this rank.
+ */
+template <int dim>
+class MaterialPointBody
+{
+public:
+  /// Entries of `Bodies/<name>` where Kind = material points.
+  static void declare(Declaration &body);
+
+  /// Generates the particles that lie in this rank's leaves. Collective.
+  MaterialPointBody(const Parameters      &body,
+                    const MaterialLibrary &materials,
+                    const Octree<dim>     &octree,
+                    const int              n_sheets);
+
+  const std::string &name() const { return points.name(); }
+  /// 0, or the part of its size that a particle reaches out from its centre.
+  double margin_of_shape() const { return transfer.shape == ParticleShape::gimp ? 0.5 : 0.; }
+
+  /// Velocities times exp(-c dt) while damping is on [J lost].
+  double damp(const double time, const double dt);
+
+  MaterialPoints<dim>                    points;
+  const MaterialVariant                 &material;
+  TransferOptions                        transfer;
+  VolumeStrain                           volume_strain;
+  StressUpdate                           stress_update;
+  std::string                            field_name;
+  unsigned int                           field = 0;
+  /// Contact radius over particle size [1].
+  double                                 radius_factor;
+  /// Acceleration [m/s^2] besides gravity, or none.
+  std::unique_ptr<dealii::Function<dim>> body_force;
+  /// Of the last stress update, on this rank.
+  StressSweep                            sweep;
+  /// Work of stresses so far, on this rank [J].
+  double                                 internal_energy = 0;
+
+private:
+  void generate(const Parameters &body, const Octree<dim> &octree);
+  void set_initial_pressure(const Parameters &body);
+
+  double damping_rate, damping_end;
+};
+} // namespace coracle

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/coupling/material_point_body.h>
+#include <coracle/grid/box_boundary.h>
+#include <coracle/grid/locate.h>
+#include <coracle/grid/nodal_field.h>
+
+#include <list>
+#include <vector>
+
+namespace coracle
+{
+/**
+ * All material point bodies of a run with the octree they move through and the
+ * velocity fields they share: each function is one line of the step.
+ */
+template <int dim>
+class MaterialPointSystem
+{
+public:
+  /// Sections `Grid` and `Bodies`. Collective.
+  MaterialPointSystem(const Parameters             &root,
+                      const MaterialLibrary        &materials,
+                      const dealii::Tensor<1, dim> &gravity,
+                      const int                     n_sheets,
+                      MPI_Comm                      comm);
+
+  /// Bound on the step from wave speed, particle speed and viscosity in the cells, on all ranks [s].
+  double stable_time_step() const;
+
+  /// Mass, momentum, internal and external force to the nodes of each field.
+  void gather(const double time, const double dt);
+  /// Velocities of nodes without contact.
+  void predict(const double dt);
+  /// Contact impulses that were added to the fields.
+  void apply_impulses();
+  /// New velocities and next positions of particles; MUSL gives momenta back in the same sweep.
+  void move(const double dt);
+  /// Strain increments and stresses from the velocities at the end of the step.
+  void update_stresses(const double time, const double dt);
+  /// Positions are taken; strays, migration, open faces; sorting when due. Collective.
+  void locate(const double time);
+
+  /// Did rows change their places, or new ones arrive, since the last call?
+  bool take_renumbered();
+
+  std::uint64_t n_particles() const;
+  /// created - removed - converted - present, over all ranks. Collective.
+  std::int64_t ledger_error() const;
+  std::size_t  memory_consumption() const;
+
+  /// What this rank's particles and nodes did to energy so far [J]; kinetic is the present value.
+  struct Books
+  {
+    double kinetic = 0, internal = 0, damping = 0, transfer = 0, boundary = 0, contact = 0,
+           external_work = 0;
+  };
+  const Books &books() const { return energy; }
+
+  Octree<dim>                       octree;
+  BoxBoundary<dim>                  boundary;
+  std::list<MaterialPointBody<dim>> bodies;
+  std::list<NodalField<dim>>        fields;
+  std::vector<std::string>          field_names;
+  const dealii::Tensor<1, dim>      gravity;
+
+private:
+  void             make_fields();
+  NodalField<dim> &field(const MaterialPointBody<dim> &body);
+  void             update_stress(MaterialPointBody<dim> &body,
+                                 const NodeRecords      &velocity,
+                                 const unsigned int      place,
+                                 const double            time,
+                                 const double            dt);
+  void             add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
+  void             sort_when_due();
+
+  Books        energy;
+  unsigned int steps_since_sort = 0;
+  bool         renumbered       = true;
+};
+} // namespace coracle

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/material_point_body.h>
+#include <coracle/grid/locate.h>
+#include <coracle/particles/generate.h>
+
+#include <sstream>
+
+namespace coracle
+{
+namespace
+{
+ParticleNeeds
+find_needs(const MaterialVariant &material, const Parameters &body, const int n_sheets)
+{
+  ParticleNeeds needs;
+  std::visit(
+    [&needs](const auto &model) {
+      using Material             = std::decay_t<decltype(model)>;
+      needs.isotropic_stress     = Material::isotropic_stress;
+      needs.deformation_gradient = Material::needs_deformation_gradient;
+      needs.n_history            = Material::n_history;
+    },
+    material);
+  needs.affine   = body.choice("Velocity transfer") == "apic";
+  needs.n_sheets = n_sheets;
+  return needs;
+}
+
+template <int dim>
+void
+check_inside_box(const Parameters &body, const dealii::BoundingBox<dim> &box)
+{
+  const dealii::BoundingBox<dim> extent = read_shape<dim>(body)->bounding_box();
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      const double tolerance = 1e-9 * box.side_length(d);
+      if (extent.lower_bound(d) >= box.lower_bound(d) - tolerance &&
+          extent.upper_bound(d) <= box.upper_bound(d) + tolerance)
+        continue;
+      std::ostringstream found;
+      found << "'" << body.name() << "' reaches from " << extent.lower_bound(d) << " m to "
+            << extent.upper_bound(d) << " m in direction " << "xyz"[d] << ", the grid's box from "
+            << box.lower_bound(d) << " m to " << box.upper_bound(d) << " m";
+      throw body.error("Shape",
+                       "a body lies outside the box",
+                       found.str(),
+                       "move or shrink the body, or enlarge Grid/Lower corner and Grid/Upper corner");
+    }
+}
+} // namespace
+
+template <int dim>
+void
+MaterialPointBody<dim>::declare(Declaration &body)
+{
+  GenerationSettings::declare(body);
+  body.text("Material", "", "Name of one of the sections in Materials.");
+  body.text("Velocity field",
+            "common",
+            "Bodies with the same word here meet without slip and without passing through each "
+            "other, as in plain MPM; bodies of different fields do not feel each other on the grid. "
+            "Two fluids on the two sides of a wall need different fields.");
+  body.list("Initial velocity", "", "m/s", "v_0", "Of all particles; empty is rest.");
+  body.function("Initial velocity function",
+                "",
+                "m/s",
+                "One expression for each direction; used instead of the constant if not empty.");
+  body.function("Initial pressure",
+                "",
+                "Pa",
+                "Fluids only: density and mass are chosen to give this pressure at the start, for "
+                "example 1000*9.81*(1-y) for water at rest under a surface at y = 1 m.");
+  body.function("Body force",
+                "",
+                "m/s^2",
+                "Acceleration besides gravity, one expression for each direction.");
+  body.choice("Shape functions",
+              "linear",
+              {"linear", "gimp"},
+              "linear: a particle's mass sits at its centre; gimp: it is spread over the particle's "
+              "box, which is smoother when particles cross cell faces and costs more.");
+  body.choice("Velocity transfer",
+              "flip",
+              {"flip", "apic"},
+              "flip: particles take the change of the grid's velocity; apic: the velocity itself and "
+              "its gradient, smoother and more dissipative.");
+  body.quantity("PIC fraction",
+                "0.05",
+                "1",
+                "alpha_PIC",
+                "flip only: share of the grid's velocity itself in a particle's new velocity; damps "
+                "what the grid does not see.",
+                0.,
+                1.);
+  body.choice("Stress update",
+              "musl",
+              {"musl", "usf", "usl"},
+              "Which velocities strain the particles: those gathered again from moved particles "
+              "(musl), those at the start (usf) or at the end (usl) of the step.");
+  body.choice("Volume strain",
+              "cell mean",
+              {"cell mean", "particle"},
+              "cell mean: all particles of a cell share the mean of their volume strain rates, "
+              "which keeps nearly incompressible material from locking and from pressure noise.");
+  body.flag("Mean pressure in forces",
+            false,
+            "Internal forces from the mean pressure of a cell's particles instead of each one's own.");
+  body.quantity("Contact radius",
+                "0.5",
+                "1",
+                "r/d_p",
+                "Radius of a particle for contact, over its size.",
+                0.,
+                2.);
+  body.quantity("Damping", "0", "1/s", "c", "Mass-proportional damping: velocities decay as exp(-c t).", 0.);
+  body.quantity("Damping until", "1e300", "s", "", "Time at which damping ends.");
+}
+
+template <int dim>
+MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
+                                          const MaterialLibrary &materials,
+                                          const Octree<dim>     &octree,
+                                          const int              n_sheets)
+  : points(body.name(), find_needs(materials.get(body.text("Material"), body), body, n_sheets))
+  , material(materials.get(body.text("Material"), body))
+  , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle :
+                                                               VolumeStrain::cell_mean)
+  , field_name(body.text("Velocity field"))
+  , radius_factor(body.quantity("Contact radius"))
+  , damping_rate(body.quantity("Damping"))
+  , damping_end(body.quantity("Damping until"))
+{
+  transfer.shape =
+    body.choice("Shape functions") == "gimp" ? ParticleShape::gimp : ParticleShape::linear;
+  transfer.velocity =
+    body.choice("Velocity transfer") == "apic" ? VelocityTransfer::apic : VelocityTransfer::flip;
+  transfer.pic_fraction     = body.quantity("PIC fraction");
+  transfer.average_pressure = body.flag("Mean pressure in forces");
+  const std::string update  = body.choice("Stress update");
+  stress_update = update == "usf" ? StressUpdate::usf :
+                  update == "usl" ? StressUpdate::usl :
+                                    StressUpdate::musl;
+  if (!body.text("Body force").empty())
+    body_force = body.function<dim>("Body force", dim);
+  generate(body, octree);
+}
+
+template <int dim>
+void
+MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octree)
+{
+  using Layout        = ParticleLayout<dim>;
+  const double density = std::visit([](const auto &m) { return m.reference_density(); }, material);
+  const auto   is_mine = [&octree](const dealii::Point<dim> &x) {
+    const int leaf = octree.find(x);
+    return leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves());
+  };
+  check_inside_box(body, octree.box());
+  const auto made = generate_particles<dim>(
+    body, is_mine, octree.owned_region(), octree.triangulation.get_communicator());
+  const double size = std::pow(made.volume, 1. / dim);
+
+  const std::vector<double>              constant = body.list("Initial velocity");
+  std::unique_ptr<dealii::Function<dim>> varying;
+  if (!body.text("Initial velocity function").empty())
+    varying = body.function<dim>("Initial velocity function", dim);
+  if (!constant.empty() && constant.size() != dim)
+    throw body.error("Initial velocity",
+                     "a velocity has the wrong number of components",
+                     std::to_string(constant.size()) + " components",
+                     "give " + std::to_string(dim) + ", one for each direction");
+
+  points.columns.resize(made.positions.size());
+  for (std::size_t row = 0; row < made.positions.size(); ++row)
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          points.column(Layout::position + d)[row]      = made.positions[row][d];
+          points.column(Layout::next_position + d)[row] = made.positions[row][d];
+          points.column(Layout::velocity + d)[row] =
+            varying ? varying->value(made.positions[row], d) : (constant.empty() ? 0. : constant[d]);
+        }
+      points.column(Layout::mass)[row]    = density * made.volume;
+      points.column(Layout::density)[row] = density;
+      points.column(Layout::size)[row]    = size;
+      points.column(Layout::id)[row]      = made.ids[row];
+    }
+  points.ledger.created = made.positions.size();
+  set_initial_pressure(body);
+  initialise_particle_stress<dim>(material, points);
+  sort_by_leaf(octree, margin_of_shape(), points);
+
+  double largest_rate = 0;
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    {
+      double square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += std::pow(points.column(Layout::velocity + d)[row], 2);
+      const double c = std::visit(
+        [&](const auto &m) { return m.sound_speed(points.column(Layout::density)[row]); }, material);
+      const double h = octree.size(octree.find(points.position(row)));
+      largest_rate   = std::max(largest_rate, (c + std::sqrt(square)) / h);
+      sweep.diffusion_rate =
+        std::max(sweep.diffusion_rate,
+                 std::visit([](const auto &m) { return m.diffusivity(); }, material) / (h * h));
+    }
+  sweep.rate = largest_rate;
+}
+
+template <int dim>
+void
+MaterialPointBody<dim>::set_initial_pressure(const Parameters &body)
+{
+  using Layout = ParticleLayout<dim>;
+  if (body.text("Initial pressure").empty())
+    return;
+  if (points.layout().n_stress != 1 &&
+      !std::holds_alternative<Fluid<WeaklyCompressible, true>>(material) &&
+      !std::holds_alternative<Fluid<Tait, true>>(material))
+    throw body.error("Initial pressure",
+                     "an initial pressure needs a fluid",
+                     "the material of '" + name() + "' is not a fluid",
+                     "remove the entry or choose a fluid");
+  const auto pressure = body.function<dim>("Initial pressure", 1);
+  std::visit(
+    [&](const auto &model) {
+      for (std::size_t row = 0; row < points.n_rows(); ++row)
+        {
+          // Newton on p(rho) = p0; dp/drho = c^2.
+          const double        wanted = pressure->value(points.position(row));
+          Motion<dim, double> motion{};
+          motion.density = model.reference_density();
+          for (unsigned int i = 0; i < 20; ++i)
+            {
+              Symmetric<dim, double> stress;
+              double                 history[8] = {};
+              model.template update<dim>(motion, stress, history);
+              const double c = model.sound_speed(motion.density);
+              motion.density += (wanted + stress.trace() / 3.) / (c * c);
+            }
+          points.column(Layout::mass)[row] *= motion.density / points.column(Layout::density)[row];
+          points.column(Layout::density)[row] = motion.density;
+        }
+    },
+    material);
+}
+
+template <int dim>
+double
+MaterialPointBody<dim>::damp(const double time, const double dt)
+{
+  if (damping_rate == 0 || time >= damping_end)
+    return 0;
+  const double before = points.kinetic_energy(), factor = std::exp(-damping_rate * dt);
+  for (int d = 0; d < dim; ++d)
+    {
+      double *const v = points.column(ParticleLayout<dim>::velocity + d);
+      for (std::size_t row = 0; row < points.n_rows(); ++row)
+        v[row] *= factor;
+    }
+  return before * (1. - factor * factor);
+}
+
+template class MaterialPointBody<2>;
+template class MaterialPointBody<3>;
+} // namespace coracle

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/material_point_system.h>
+#include <coracle/particles/shape.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace coracle
+{
+namespace
+{
+constexpr unsigned int steps_between_sorts = 10;
+
+// Work expected in a cell: its particles, on top of one for the cell itself.
+template <int dim>
+std::function<double(const dealii::Point<dim> &, const double)>
+particle_weight(const Parameters &bodies)
+{
+  std::vector<std::pair<std::shared_ptr<Shape<dim>>, double>> shapes;
+  for (const std::string &name : bodies.section_names())
+    {
+      const Parameters body = bodies.section(name);
+      if (body.choice("Kind") == "material points")
+        shapes.emplace_back(read_shape<dim>(body), body.quantity("Particle spacing"));
+    }
+  return [shapes](const dealii::Point<dim> &centre, const double size) {
+    double n_particles = 0;
+    for (const auto &[shape, spacing] : shapes)
+      if (shape->contains(centre))
+        n_particles += std::pow(size / spacing, dim);
+    return n_particles;
+  };
+}
+} // namespace
+
+template <int dim>
+MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root,
+                                              const MaterialLibrary        &materials,
+                                              const dealii::Tensor<1, dim> &gravity,
+                                              const int                     n_sheets,
+                                              MPI_Comm                      comm)
+  : octree(OctreeDescription<dim>::read(root.section("Grid")),
+           particle_weight<dim>(root.section("Bodies")),
+           comm)
+  , boundary(BoxBoundary<dim>::read(root.section("Grid")), octree)
+  , gravity(gravity)
+{
+  const Parameters section = root.section("Bodies");
+  for (const std::string &name : section.section_names())
+    if (section.section(name).choice("Kind") == "material points")
+      bodies.emplace_back(section.section(name), materials, octree, n_sheets);
+  make_fields();
+  for (auto &body : bodies)
+    energy.kinetic += body.points.kinetic_energy();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::make_fields()
+{
+  for (auto &body : bodies)
+    {
+      const auto found = std::find(field_names.begin(), field_names.end(), body.field_name);
+      body.field       = found - field_names.begin();
+      if (found == field_names.end())
+        {
+          field_names.push_back(body.field_name);
+          fields.emplace_back(octree, boundary);
+        }
+    }
+}
+
+template <int dim>
+NodalField<dim> &
+MaterialPointSystem<dim>::field(const MaterialPointBody<dim> &body)
+{
+  return *std::next(fields.begin(), body.field);
+}
+
+template <int dim>
+double
+MaterialPointSystem<dim>::stable_time_step() const
+{
+  double rate = 0;
+  for (const auto &body : bodies)
+    {
+      rate = std::max(rate, body.sweep.rate);
+      // h / c and h^2 / (2 dim nu) are limits of their own: the sum of their inverses is on the safe side.
+      rate = std::max(rate, body.sweep.rate + 2 * dim * body.sweep.diffusion_rate);
+    }
+  rate = mpi::max(rate, octree.triangulation.get_communicator());
+  return rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::gather(const double time, const double dt)
+{
+  for (auto &f : fields)
+    f.clear();
+  for (auto &body : bodies)
+    {
+      energy.damping += body.damp(time, dt);
+      const Give give =
+        body.stress_update == StressUpdate::usf ? Give::mass_and_momentum : Give::everything;
+      particles_to_grid(octree, body.points, body.transfer, give, field(body));
+    }
+  const bool any_usf = std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
+    return body.stress_update == StressUpdate::usf;
+  });
+  if (any_usf)
+    {
+      // Stresses follow the velocities gathered so far, then give their forces. Every body of the
+      // field has given its momentum by now.
+      for (auto &f : fields)
+        {
+          f.sum();
+          f.predict(0., dealii::Tensor<1, dim>());
+        }
+      for (auto &body : bodies)
+        if (body.stress_update == StressUpdate::usf)
+          {
+            update_stress(body, field(body).motion(), NodalField<dim>::Motion::velocity, time, dt);
+            particles_to_grid(octree, body.points, body.transfer, Give::force, field(body));
+          }
+    }
+  for (auto &body : bodies)
+    if (body.body_force)
+      add_body_forces(body, time, dt);
+  for (auto &f : fields)
+    f.sum();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt)
+{
+  using Layout   = ParticleLayout<dim>;
+  using Gathered = typename NodalField<dim>::Gathered;
+  auto &points   = body.points;
+  auto &records  = field(body).gathered();
+  body.body_force->set_time(time);
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    if (!points.is_hole(row))
+      {
+        const auto             x = points.position(row);
+        const double           m = points.column(Layout::mass)[row];
+        dealii::Tensor<1, dim> force;
+        for (int d = 0; d < dim; ++d)
+          {
+            force[d] = m * body.body_force->value(x, d);
+            energy.external_work +=
+              dt * force[d] *
+              (points.column(Layout::velocity + d)[row] + 0.5 * dt * force[d] / m);
+          }
+        const double half = body.margin_of_shape() * points.column(Layout::size)[row];
+        for_each_piece(
+          octree, x, half, [&](const int leaf, const auto &piece, const double fraction) {
+            const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
+            for (int c = 0; c < (1 << dim); ++c)
+              for (int d = 0; d < dim; ++d)
+                records[octree.nodes(leaf)[c]][Gathered::force + d] +=
+                  fraction * shape.value[c] * force[d];
+          });
+      }
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::predict(const double dt)
+{
+  for (auto &f : fields)
+    f.predict(dt, gravity);
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::apply_impulses()
+{
+  for (auto &f : fields)
+    f.apply_impulses();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::move(const double dt)
+{
+  for (auto &f : fields)
+    {
+      const auto &books = f.energies();
+      energy.external_work += books.gravity;
+      energy.boundary += books.boundary;
+      energy.contact += books.contact;
+      energy.transfer += books.given - books.gathered;
+      f.clear_momentum();
+    }
+  // Lost to the grid and back: (particles - gathered) before, (given - particles) after the step.
+  energy.transfer += energy.kinetic;
+  for (auto &body : bodies)
+    grid_to_particles(
+      octree, body.transfer, dt, body.stress_update == StressUpdate::musl, field(body), body.points);
+  energy.kinetic = 0;
+  for (const auto &body : bodies)
+    energy.kinetic += body.points.kinetic_energy();
+  energy.transfer -= energy.kinetic;
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
+                                        const NodeRecords      &velocity,
+                                        const unsigned int      place,
+                                        const double            time,
+                                        const double            dt)
+{
+  body.sweep = update_particle_stress(octree,
+                                      velocity,
+                                      place,
+                                      body.material,
+                                      body.transfer.shape,
+                                      body.volume_strain,
+                                      dt,
+                                      body.points);
+  body.internal_energy += body.sweep.work;
+  energy.internal += body.sweep.work;
+  if (body.sweep.bad_row >= 0)
+    {
+      const auto        &points = body.points;
+      std::ostringstream details;
+      details << "particle " << points.id(body.sweep.bad_row) << " of '" << body.name() << "' at ("
+              << points.position(body.sweep.bad_row) << ") m, t = " << time << " s: density "
+              << points.column(ParticleLayout<dim>::density)[body.sweep.bad_row] << " kg/m^3, stress "
+              << points.column(ParticleLayout<dim>::stress)[body.sweep.bad_row] << " Pa";
+      throw RunFailure("the state of a particle is no longer physical",
+                       details.str(),
+                       "lower 'Safety factor', or look at what hits this place");
+    }
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::update_stresses(const double time, const double dt)
+{
+  using Field = NodalField<dim>;
+  for (auto &f : fields)
+    {
+      f.sum();
+      f.remap();
+    }
+  for (auto &body : bodies)
+    if (body.stress_update == StressUpdate::musl)
+      update_stress(body, field(body).gathered(), Field::Gathered::momentum, time, dt);
+    else if (body.stress_update == StressUpdate::usl)
+      update_stress(body, field(body).motion(), Field::Motion::velocity, time, dt);
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::locate(const double time)
+{
+  for (auto &body : bodies)
+    if (move_and_locate(octree, boundary, body.margin_of_shape(), time, body.points) > 0)
+      renumbered = true;
+  if (++steps_since_sort >= steps_between_sorts)
+    {
+      for (auto &body : bodies)
+        sort_by_leaf(octree, body.margin_of_shape(), body.points);
+      steps_since_sort = 0;
+      renumbered       = true;
+    }
+}
+
+template <int dim>
+bool
+MaterialPointSystem<dim>::take_renumbered()
+{
+  const bool result = renumbered;
+  renumbered        = false;
+  return result;
+}
+
+template <int dim>
+std::uint64_t
+MaterialPointSystem<dim>::n_particles() const
+{
+  std::uint64_t n = 0;
+  for (const auto &body : bodies)
+    n += body.points.n_particles();
+  return n;
+}
+
+template <int dim>
+std::int64_t
+MaterialPointSystem<dim>::ledger_error() const
+{
+  std::int64_t error = 0;
+  for (const auto &body : bodies)
+    {
+      const ParticleLedger &ledger = body.points.ledger;
+      error += std::int64_t(ledger.created) - std::int64_t(ledger.removed) -
+               std::int64_t(ledger.converted) - std::int64_t(body.points.n_particles());
+    }
+  return mpi::sum(error, octree.triangulation.get_communicator());
+}
+
+template <int dim>
+std::size_t
+MaterialPointSystem<dim>::memory_consumption() const
+{
+  std::size_t bytes = octree.memory_consumption();
+  for (const auto &body : bodies)
+    bytes += body.points.memory_consumption();
+  for (const auto &f : fields)
+    bytes += f.memory_consumption();
+  return bytes;
+}
+
+template class MaterialPointSystem<2>;
+template class MaterialPointSystem<3>;
+} // namespace coracle

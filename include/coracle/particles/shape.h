@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/base/parameters.h>
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/base/point.h>
+
+#include <memory>
+#include <optional>
+
+namespace coracle
+{
+/**
+ * A region of space that a body fills at the start. Asked once per lattice
+ * point when particles are generated, never during a step.
+ */
+template <int dim>
+class Shape
+{
+public:
+  virtual ~Shape() = default;
+
+  /// Points on the boundary belong to either side, always to the same one.
+  virtual bool contains(const dealii::Point<dim> &point) const = 0;
+
+  /// The smallest axis-parallel box around the shape [m], if the shape knows it, or one that holds
+  /// it.
+  virtual dealii::BoundingBox<dim> bounding_box() const = 0;
+
+  /// Exact volume [m^dim], where it is known in closed form.
+  virtual std::optional<double> volume() const = 0;
+};
+
+/// The entry `Shape` of a body and the entries that each shape has.
+void declare_shape(Declaration &body);
+
+/**
+ * The shape that the section of a body describes. Throws a UserError for an
+ * empty or self-crossing shape, a surface that is not closed, a file that cannot
+ * be read, or a shape that this number of dimensions does not have.
+ */
+template <int dim>
+std::unique_ptr<Shape<dim>> read_shape(const Parameters &body);
+} // namespace coracle

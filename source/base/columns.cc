@@ -3,8 +3,7 @@
 
 namespace coracle
 {
-Columns::Columns(const unsigned int n_columns)
-  : columns(n_columns)
+Columns::Columns(const unsigned int n_columns) : columns(n_columns)
 {
   for (auto &column : columns)
     column.resize(pack_size);

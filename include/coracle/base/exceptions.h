@@ -34,4 +34,8 @@ public:
 
   const std::string title, details, cure;
 };
+
+/// The message as the user sees it, "error: <title>" and an indented line for each of the rest.
+std::string describe(const UserError &error);
+std::string describe(const RunFailure &error);
 } // namespace coracle

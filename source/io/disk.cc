@@ -7,7 +7,16 @@
 
 namespace coracle
 {
-std::string
+void
+throw_not_written(const std::string &what_went_wrong)
+{
+  throw RunFailure("a result could not be written",
+                   what_went_wrong,
+                   "make room on the disk, and see that the output folder still exists and may be "
+                   "written to");
+}
+
+void
 write_file(const std::string &file_name, const std::string &content)
 {
   const std::string beside = file_name + ".part";
@@ -15,24 +24,11 @@ write_file(const std::string &file_name, const std::string &content)
   file.write(content.data(), content.size());
   file.close();
   if (!file)
-    return beside + ": it could not be written";
+    throw_not_written(beside + ": it could not be written");
 
   std::error_code error;
   std::filesystem::rename(beside, file_name, error);
-  return error ? file_name + ": " + error.message() : "";
-}
-
-void
-throw_if_any(const std::string &problem, MPI_Comm communicator)
-{
-  using namespace dealii::Utilities::MPI;
-  const unsigned int n_ranks = n_mpi_processes(communicator);
-  const unsigned int first =
-    min(problem.empty() ? n_ranks : this_mpi_process(communicator), communicator);
-  if (first < n_ranks)
-    throw RunFailure("a result could not be written",
-                     broadcast(communicator, problem, first),
-                     "make room on the disk, and see that the output folder still exists and may "
-                     "be written to");
+  if (error)
+    throw_not_written(file_name + ": " + error.message());
 }
 } // namespace coracle

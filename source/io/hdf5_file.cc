@@ -92,8 +92,13 @@ Hdf5File::write_rows(const std::string  &dataset,
       H5Sselect_none(file_space);
       H5Sselect_none(memory_space);
     }
-  check(set >= 0 && H5Dwrite(set, type, memory_space, file_space, transfer, values) >= 0,
-        "dataset '" + dataset + "' could not be written");
+  // HDF5 refuses a null buffer even where nothing is to be written, and a dataset without storage.
+  const double      nothing = 0;
+  const void *const buffer  = (rows.local > 0 ? values : &nothing);
+  const bool        good =
+    set >= 0 &&
+    (rows.total == 0 || H5Dwrite(set, type, memory_space, file_space, transfer, buffer) >= 0);
+  check(good, "dataset '" + dataset + "' could not be written");
   H5Dclose(set);
   H5Sclose(memory_space);
   H5Sclose(file_space);

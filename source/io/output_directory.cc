@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
 #include <coracle/io/disk.h>
 #include <coracle/io/output_directory.h>
 #include <coracle/io/text.h>
@@ -52,7 +53,7 @@ std::string
 OutputDirectory::create() const
 {
   std::string problem;
-  if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+  if (mpi::rank(comm) == 0)
     {
       std::error_code error;
       std::filesystem::create_directories(directory + "/data", error);
@@ -76,7 +77,7 @@ OutputDirectory::claim(const std::string &series_name)
                     "the name '" + series_name + "' (files " + name + ".*) is taken",
                     "give the body another name ('octree' is the background grid's own)");
 
-  if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
+  if (mpi::rank(comm) == 0)
     {
       std::error_code ignored;
       for (const auto &entry : std::filesystem::directory_iterator(directory + "/data", ignored))
@@ -92,7 +93,11 @@ OutputDirectory::claim(const std::string &series_name)
 void
 OutputDirectory::write_parameters(const std::string &text) const
 {
-  const bool writes = (dealii::Utilities::MPI::this_mpi_process(comm) == 0);
-  throw_if_any(writes ? write_file(file("parameters.prm"), text) : "", comm);
+  mpi::agree(
+    [&] {
+      if (mpi::rank(comm) == 0)
+        write_file(file("parameters.prm"), text);
+    },
+    comm);
 }
 } // namespace coracle

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
 #include <coracle/io/disk.h>
 #include <coracle/io/hdf5_file.h>
 #include <coracle/io/particle_output.h>
@@ -78,9 +79,8 @@ ParticleOutput::write_hdf5(const double              time,
   const std::string file_name = "data/" + name + "." + six_digits(grids.size()) + ".h5";
   RowPartition      rows;
   rows.local = n_particles;
-  rows.total = dealii::Utilities::MPI::sum(rows.local, comm);
-  MPI_Exscan(&rows.local, &rows.first, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm);
-  static_assert(sizeof(hsize_t) == sizeof(unsigned long long), "MPI type of hsize_t");
+  rows.total = mpi::sum<std::uint64_t>(n_particles, comm);
+  rows.first = mpi::offset<std::uint64_t>(n_particles, comm);
 
   Hdf5File file(folder + "/" + file_name, comm);
   file.set_attribute("", "time", time);
@@ -100,7 +100,12 @@ ParticleOutput::write_hdf5(const double              time,
       file.set_attribute(field.name, "unit", field.unit);
     }
   file.close();
-  throw_if_any(file.problem(), comm);
+  mpi::agree(
+    [&] {
+      if (!file.problem().empty())
+        throw_not_written(file.problem());
+    },
+    comm);
 
   grids.push_back(xdmf_grid(time, file_name, rows.total, fields, format.single_precision));
   write_xdmf();
@@ -109,16 +114,16 @@ ParticleOutput::write_hdf5(const double              time,
 void
 ParticleOutput::write_xdmf() const
 {
-  std::string problem;
-  if (dealii::Utilities::MPI::this_mpi_process(comm) == 0)
-    {
-      std::string text =
-        "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n<Domain>\n<Grid Name=\"" +
-        xml_text(title) + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-      for (const std::string &grid : grids)
-        text += grid;
-      problem = write_file(folder + "/" + name + ".xdmf", text + "</Grid>\n</Domain>\n</Xdmf>\n");
-    }
-  throw_if_any(problem, comm);
+  const auto write = [&] {
+    if (mpi::rank(comm) != 0)
+      return;
+    std::string text = "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n<Domain>\n<Grid Name=\"" +
+                       xml_text(title) +
+                       "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+    for (const std::string &grid : grids)
+      text += grid;
+    write_file(folder + "/" + name + ".xdmf", text + "</Grid>\n</Domain>\n</Xdmf>\n");
+  };
+  mpi::agree(write, comm);
 }
 } // namespace coracle

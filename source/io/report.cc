@@ -9,21 +9,21 @@
 namespace coracle
 {
 double
-Energies::magnitude() const
+EnergyBooks::magnitude() const
 {
   // Internal and strain energy are booked as work, which may be negative in tension released.
   return std::max({kinetic, std::abs(internal), std::abs(strain), std::abs(external_work)});
 }
 
 void
-EnergyBalance::start(const Energies &initial)
+EnergyBalance::start(const EnergyBooks &initial)
 {
   initial_balance = initial.balance();
   scale           = initial.magnitude();
 }
 
 double
-EnergyBalance::error(const Energies &now)
+EnergyBalance::error(const EnergyBooks &now)
 {
   scale = std::max(scale, now.magnitude());
   return scale > 0 ? (now.balance() - initial_balance) / scale : 0.;
@@ -82,7 +82,7 @@ set_standard_columns(Statistics &statistics, const Report<dim> &report)
   statistics.set("particles.removed", report.particles_removed);
   statistics.set("particles.converted", report.particles_converted);
 
-  const Energies &e = report.energies;
+  const EnergyBooks &e = report.energies;
   statistics.set("energy.kinetic", e.kinetic);
   statistics.set("energy.internal", e.internal);
   statistics.set("energy.strain", e.strain);

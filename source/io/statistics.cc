@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <deal.II/base/exceptions.h>
 
-#include <coracle/base/exceptions.h>
+#include <coracle/io/disk.h>
 #include <coracle/io/statistics.h>
 #include <coracle/io/text.h>
 
@@ -96,8 +96,6 @@ Statistics::write_line(const std::string &line)
     file.open(file_name);
   file << line << std::endl;
   if (!file)
-    throw RunFailure("the statistics could not be written",
-                     file_name,
-                     "make room on the disk, and see that the output folder still exists");
+    throw_not_written(file_name);
 }
 } // namespace coracle

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
 #include <coracle/io/disk.h>
 #include <coracle/io/text.h>
 #include <coracle/io/vtu_file.h>
@@ -18,9 +19,8 @@ VtuSeries::VtuSeries(const OutputDirectory &directory,
 void
 VtuSeries::write(const double time, const VtuPiece &piece)
 {
-  const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(comm);
-  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(comm);
-  const std::string  stem    = name + "." + six_digits(entries.size());
+  const unsigned int rank = mpi::rank(comm), n_ranks = mpi::n_ranks(comm);
+  const std::string  stem = name + "." + six_digits(entries.size());
 
   std::vector<std::string> pieces;
   for (unsigned int r = 0; r < n_ranks; ++r)
@@ -29,12 +29,14 @@ VtuSeries::write(const double time, const VtuPiece &piece)
   const std::string opened = (n_ranks == 1 ? pieces[0] : stem + ".pvtu");
   entries.emplace_back(time, "data/" + opened);
 
-  std::string problem =
-    write_file(folder + "/data/" + pieces[rank], vtu_text(piece, single_precision));
-  if (problem.empty() && rank == 0 && n_ranks > 1)
-    problem = write_file(folder + "/data/" + opened, pvtu_text(piece, pieces, single_precision));
-  if (problem.empty() && rank == 0)
-    problem = write_file(folder + "/" + name + ".pvd", pvd_text(entries));
-  throw_if_any(problem, comm);
+  mpi::agree(
+    [&] {
+      write_file(folder + "/data/" + pieces[rank], vtu_text(piece, single_precision));
+      if (rank == 0 && n_ranks > 1)
+        write_file(folder + "/data/" + opened, pvtu_text(piece, pieces, single_precision));
+      if (rank == 0)
+        write_file(folder + "/" + name + ".pvd", pvd_text(entries));
+    },
+    comm);
 }
 } // namespace coracle

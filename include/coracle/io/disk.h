@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deal.II/base/mpi.h>
-
 #include <string>
 
 namespace coracle
 {
-/**
- * Write the whole file beside its place, then move it there, so that a reader
- * never meets half of it. Not collective.
- *
- * @return empty, or what went wrong (disk full, folder gone), for throw_if_any()
- */
-std::string write_file(const std::string &file_name, const std::string &content);
+/// Throws the RunFailure of a result that could not be written. Not collective: see mpi::agree().
+[[noreturn]] void throw_not_written(const std::string &what_went_wrong);
 
 /**
- * Collective. If any rank brings a problem, throws a RunFailure that names the
- * problem of the lowest such rank, on all ranks.
+ * Write the whole file beside its place, then move it there, so that a reader
+ * never meets half of it. Not collective; throws as above.
  */
-void throw_if_any(const std::string &problem, MPI_Comm communicator);
+void write_file(const std::string &file_name, const std::string &content);
 } // namespace coracle

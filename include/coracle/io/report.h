@@ -23,7 +23,7 @@ namespace coracle
  *
  * stays what it was at the start if every kind is booked.
  */
-struct Energies
+struct EnergyBooks
 {
   double kinetic       = 0; ///< particles, elements and rigid bodies
   double internal      = 0; ///< stress work done on particles so far
@@ -48,9 +48,9 @@ struct Energies
 class EnergyBalance
 {
 public:
-  void start(const Energies &initial);
+  void start(const EnergyBooks &initial);
   /// (B - B(0)) / largest magnitude so far; 0 while nothing moves.
-  double error(const Energies &now);
+  double error(const EnergyBooks &now);
 
 private:
   double initial_balance = 0, scale = 0;
@@ -88,7 +88,7 @@ struct Report
   std::uint64_t particles_created = 0, particles_removed = 0, particles_converted = 0;
   /// Particle-steps done so far, for the rate shown.
   double                       particle_steps = 0;
-  Energies                     energies;
+  EnergyBooks                     energies;
   double                       energy_balance_error = 0;
   dealii::Tensor<1, dim>       momentum; ///< of everything [kg m/s]
   std::vector<BodyReport<dim>> bodies;

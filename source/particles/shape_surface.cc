@@ -127,6 +127,9 @@ read_closed_surface(const Parameters &body)
       std::ostringstream text;
       exception.print_info(text);
       problem = text.str();
+      // deal.II sets its messages off with blanks and an empty line.
+      problem.erase(0, problem.find_first_not_of(" \n"));
+      problem.erase(problem.find_last_not_of(" \n") + 1);
     }
   catch (const std::exception &exception)
     {

@@ -198,7 +198,7 @@ run_guarded(const std::function<int()> &function, const MPI_Comm comm)
     {
       code = finish("error: the program failed in a way that was not foreseen\n" +
                       std::string(error.what()),
-                    1,
+                    4,
                     comm);
     }
   return code;

@@ -127,7 +127,7 @@ on_root(const std::function<Result()> &function, const MPI_Comm comm)
 /**
  * The whole program: run a function that returns an exit code, and turn what it
  * throws into one message on the error stream and an exit code: 2 for a
- * UserError, 3 for a RunFailure, 1 for anything else. If all ranks throw, they
+ * UserError, 3 for a RunFailure, 4 for anything else. If all ranks throw, they
  * return alike; a rank that throws alone prints and ends the others too,
  * without waiting for them.
  */

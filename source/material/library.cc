@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/parameter_declaration.h>
 #include <coracle/material/library.h>
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -52,25 +52,6 @@ read_material(const Parameters &parameters)
   });
   return result.value();
 }
-
-/// Letters to insert, delete or replace (Levenshtein).
-int
-edits_between(const std::string &a, const std::string &b)
-{
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    {
-      int diagonal = row[0]++;
-      for (std::size_t j = 0; j < b.size(); ++j)
-        {
-          const int replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-          diagonal           = row[j + 1];
-          row[j + 1]         = std::min({replaced, row[j] + 1, diagonal + 1});
-        }
-    }
-  return row.back();
-}
 } // namespace
 
 void
@@ -114,16 +95,10 @@ MaterialLibrary::get(const std::string &name, const Parameters &asker) const
   std::vector<std::string> names;
   for (const auto &material : materials)
     names.push_back(material.first);
-  std::stable_sort(names.begin(), names.end(), [&](const std::string &a, const std::string &b) {
-    return edits_between(name, a) < edits_between(name, b);
-  });
-  std::string known;
-  for (const std::string &n : names)
-    known += (known.empty() ? "'" : ", '") + n + "'";
   throw asker.error("Material",
                     name.empty() ? "body without a material" : "unknown material",
                     name.empty() ? "no name" : "'" + name + "'",
                     names.empty() ? "add a subsection to Materials that describes it"
-                                  : "use one of " + known + ", or add a subsection to Materials");
+                                  : internal::suggest(name, names));
 }
 } // namespace coracle

@@ -10,7 +10,8 @@
 /**
  * What a Declaration collects: the tree of sections and entries that parameter
  * files are checked against and documentation is printed from. Only the
- * parameters' own sources include this.
+ * parameters' own sources include this, and sources that look up a name the
+ * user gave (suggest()).
  */
 namespace coracle::internal
 {

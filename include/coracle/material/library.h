@@ -39,7 +39,7 @@ public:
 
   /**
    * The material that the section `asker` names in its entry `Material`.
-   * Throws a UserError that lists the names there are, nearest first.
+   * Throws a UserError that suggests the nearest name and lists those there are.
    */
   const MaterialVariant &get(const std::string &name, const Parameters &asker) const;
 

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deal.II/base/function.h>
+
+#include <coracle/structure/rigid_rotation.h>
+#include <coracle/structure/structural_body.h>
+
+#include <limits>
+#include <memory>
+
+namespace coracle
+{
+/**
+ * A rigid body: the shape and inertia of a mesh, free in some directions and
+ * moved by functions of time in the others. Its state is the same on all ranks;
+ * its mesh and surface are distributed. The steps are those of SolidBody.
+ */
+template <int dim>
+class RigidBody : public StructuralBody<dim>
+{
+public:
+  using Vector  = dealii::Tensor<1, dim>;
+  using Vector3 = dealii::Tensor<1, 3>;
+
+  /// Entries of a body of the kind `rigid`.
+  static void declare(Declaration &body_section);
+
+  /// @param gravity [m/s^2]; throws UserError. Collective.
+  RigidBody(const Parameters &body, const Vector &gravity, MPI_Comm comm);
+
+  double stable_time_step() const { return std::numeric_limits<double>::infinity(); }
+
+  void assemble_forces(const double time);
+  void predict_velocities(const double dt);
+
+  /// Contact impulse on a node [N s]; its moment is taken about the centre.
+  void add_contact_impulse(const unsigned int node, const Vector &impulse);
+  /// Sum over ranks, change velocity and spin. Collective.
+  void apply_contact_impulses();
+
+  /// Push the body at a node by what the correction does to its centre and orientation [kg m].
+  void add_correction(const unsigned int node, const Vector &correction);
+  void apply_corrections();
+
+  void move(const double dt);
+  void update_stress(const double) {}
+
+  Energies         energies() const;
+  BodySummary<dim> summary() const;
+
+  // What contact solves for (RigidUnknown of contact/contact.h).
+  const dealii::Point<dim> &centre() const { return body_centre; }
+  const Vector             &centre_velocity() const { return body_velocity; }
+  Vector3                   spin() const { return rotation.spin(); }
+  /// 1/M in each direction, 0 where not free [1/kg].
+  const Vector        &body_inverse_mass() const { return inverse_mass_of_body; }
+  dealii::Tensor<2, 3> inverse_inertia() const { return rotation.inverse_inertia(); }
+
+  double               mass() const { return body_mass; }
+  const RigidRotation &orientation() const { return rotation; }
+
+private:
+  using Node = NodeColumns<dim>;
+
+  /// Force and moment impulses, or corrections, of this rank's contacts.
+  struct Push
+  {
+    Vector  sum;
+    Vector3 moment;
+  };
+
+  void   read_mass(const Parameters &body);
+  void   read_motion(const Parameters &body);
+  void   read_initial_motion(const Parameters &body);
+  void   prescribe(const double dt);
+  void   set_node_velocities();
+  void   set_node_positions();
+  void   add(Push &push, const unsigned int node, const Vector &value) const;
+  /// Sum over ranks, and reset.
+  Push   total(Push &push) const;
+  double kinetic_energy() const;
+
+  double               body_mass = 0;
+  dealii::Tensor<2, 3> inertia;
+  dealii::Point<dim>   reference_centre, body_centre;
+  Vector               body_velocity, inverse_mass_of_body;
+  RigidRotation        rotation;
+  const Vector         gravity;
+
+  /// Of the directions that are not free; null if these stand still.
+  std::unique_ptr<dealii::Function<dim>> velocity_function, displacement_function, spin_function;
+
+  Push    impulse, correction;
+  Vector  last_force;
+  Vector3 last_moment;
+  double  time = 0, last_dt = 0, external_work = 0, contact_work = 0;
+};
+
+extern template class RigidBody<2>;
+extern template class RigidBody<3>;
+} // namespace coracle

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/material/library.h>
+#include <coracle/structure/boundary_conditions.h>
+#include <coracle/structure/elements.h>
+#include <coracle/structure/loads.h>
+#include <coracle/structure/structural_body.h>
+
+namespace coracle
+{
+/**
+ * A deformable body of quadrilaterals or hexahedra, explicit with lumped mass:
+ * central differences, velocities at half steps. The first step's kick is half
+ * as long, so that the initial velocity counts at time zero.
+ *
+ * One step, in this order (each collective over the ranks, also those without
+ * elements):
+ *
+ *   assemble_forces(t)  predict_velocities(dt)
+ *   [add_contact_impulse ... apply_contact_impulses()] [add_correction ... apply_corrections()]
+ *   move(dt)  update_stress(dt)
+ *
+ * Forces that ranks share are summed at the owner of a node; every rank then
+ * has the same velocities. Hanging nodes hand their forces to their parents and
+ * move as these do.
+ */
+template <int dim>
+class SolidBody : public StructuralBody<dim>
+{
+public:
+  using Vector = dealii::Tensor<1, dim>;
+
+  /// Entries of a body of the kind `solid`.
+  static void declare(Declaration &body_section);
+
+  /// @param gravity [m/s^2]; throws UserError. Collective.
+  SolidBody(const Parameters             &body,
+            const MaterialLibrary        &materials,
+            const dealii::Tensor<1, dim> &gravity,
+            MPI_Comm                      comm);
+
+  /// Of this rank's elements as they are now, infinite without any [s]. Multiply by a safety factor.
+  double stable_time_step() const { return elements.stable_time_step(); }
+
+  /// Loads at `time`, and sums over ranks of them and of the internal force.
+  void assemble_forces(const double time);
+  /// Velocities of the step of length dt, without contact.
+  void predict_velocities(const double dt);
+
+  /// Contact impulse on a node of surface_nodes() [N s], from any rank that has it.
+  void add_contact_impulse(const unsigned int node, const Vector &impulse);
+  /// Sum the impulses of all ranks and change the velocities.
+  void apply_contact_impulses();
+
+  /// Push a node by correction/m in `move`, leaving its velocity [kg m].
+  void add_correction(const unsigned int node, const Vector &correction);
+  void apply_corrections();
+
+  void move(const double dt);
+  /// Stresses, and internal forces for the next step. Throws RunFailure, on the rank concerned only.
+  void update_stress(const double dt);
+
+  /// Collective sums.
+  Energies         energies() const;
+  BodySummary<dim> summary() const;
+
+  unsigned int n_points_per_element() const { return elements.n_points(); }
+  /// Mean over the points of an element of mesh().elements [Pa].
+  Symmetric<dim, double> stress(const unsigned int element) const
+  {
+    return elements.stress(element);
+  }
+
+private:
+  using Node = NodeColumns<dim>;
+
+  void   set_mass();
+  void   kick(const double duration, const double dt);
+  double damping_at(const double time) const;
+  /// Forces of hanging nodes go to their parents.
+  void condense(const unsigned int first_column, const unsigned int n_columns);
+  /// Ghosts as their owners, then hanging nodes as the mean of their parents.
+  void distribute(const unsigned int first_column);
+
+  Elements<dim>           elements;
+  BoundaryConditions<dim> boundary_conditions;
+  Loads<dim>              loads;
+  const Vector            gravity;
+  /// 1/s, from and to which time [s].
+  const double damping, damping_start, damping_end;
+
+  double time = 0, last_dt = 0;
+  /// This rank's part of all books but `kinetic` and `hourglass`; strain includes hourglass.
+  Energies books;
+};
+
+extern template class SolidBody<2>;
+extern template class SolidBody<3>;
+} // namespace coracle

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/lac/affine_constraints.h>
+
+#include <coracle/mesh/mesh_generation.h>
+#include <coracle/mesh/structure_mesh.h>
+
+#include <string>
+
+namespace coracle
+{
+namespace
+{
+/// Vertices of the reference cell on each face, so that the outward normal follows surface.h.
+template <int dim>
+std::array<std::array<unsigned int, BoundaryFacet<dim>::n_nodes>, 2 * dim>
+outward_faces()
+{
+  if constexpr (dim == 2)
+    return {{{{2, 0}}, {{1, 3}}, {{0, 1}}, {{3, 2}}}};
+  else
+    return {{{{0, 4, 6, 2}},
+             {{1, 3, 7, 5}},
+             {{0, 1, 5, 4}},
+             {{2, 6, 7, 3}},
+             {{0, 2, 3, 1}},
+             {{4, 5, 7, 6}}}};
+}
+
+/// Coarse cell, path through the refinement tree (a leading 1, then three bits a level), face.
+template <typename Cell>
+std::uint64_t
+facet_key(const Cell &cell, const unsigned int face)
+{
+  constexpr unsigned int path_bits = 3 * 11 + 1, face_bits = 3;
+  const dealii::CellId   id        = cell->id();
+  std::uint64_t          path      = 1;
+  for (const auto child : id.get_child_indices())
+    path = 8 * path + static_cast<unsigned int>(child);
+  return (((id.get_coarse_cell_id() << path_bits) + path) << face_bits) + face;
+}
+
+} // namespace
+
+template <int dim>
+StructureMesh<dim>::StructureMesh(const Parameters &section, MPI_Comm comm)
+  : triangulation(comm)
+  , fe(1)
+  , dof_handler(triangulation)
+{
+  dealii::Triangulation<dim> coarse;
+  generate_mesh(section, coarse);
+  triangulation.copy_triangulation(coarse);
+  triangulation.refine_global(section.integer("Refinements"));
+  place_mesh(section, triangulation);
+  // Manifolds know the shape where it was generated, not where it is now.
+  triangulation.reset_all_manifolds();
+  triangulation.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
+  refine_region(section);
+  number_nodes();
+}
+
+template <int dim>
+StructureMesh<dim>::StructureMesh(const dealii::Triangulation<dim> &coarse,
+                                  MPI_Comm                          comm,
+                                  const unsigned int                n_refinements)
+  : triangulation(comm)
+  , fe(1)
+  , dof_handler(triangulation)
+{
+  triangulation.copy_triangulation(coarse);
+  triangulation.refine_global(n_refinements);
+  number_nodes();
+}
+
+template <int dim>
+void
+StructureMesh<dim>::declare(Declaration &section)
+{
+  declare_mesh(section);
+}
+
+template <int dim>
+void
+StructureMesh<dim>::refine_region(const Parameters &section)
+{
+  const std::vector<double> box = section.list("Refined region");
+  if (box.empty())
+    return;
+  if (box.size() != 2 * dim)
+    throw section.error("Refined region",
+                        "wrong number of coordinates",
+                        std::to_string(box.size()) + " of them",
+                        "give lower and upper corner, " + std::to_string(2 * dim) + " numbers");
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_locally_owned())
+      {
+        bool inside = true;
+        for (int d = 0; d < dim; ++d)
+          inside = inside && box[d] <= cell->center()[d] && cell->center()[d] <= box[dim + d];
+        if (inside)
+          cell->set_refine_flag();
+      }
+  triangulation.execute_coarsening_and_refinement();
+}
+
+template <int dim>
+void
+StructureMesh<dim>::number_nodes()
+{
+  dof_handler.distribute_dofs(fe);
+  const dealii::IndexSet owned = dof_handler.locally_owned_dofs();
+  dealii::IndexSet       needed, relevant;
+  dealii::DoFTools::extract_locally_active_dofs(dof_handler, needed);
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+
+  // Parents of a hanging node may belong to a neighbour's element only.
+  dealii::AffineConstraints<double> constraints(relevant);
+  dealii::DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+  constraints.close();
+  dealii::IndexSet with_parents = needed;
+  for (const auto node : needed)
+    if (constraints.is_constrained(node))
+      for (const auto &[parent, weight] : *constraints.get_constraint_entries(node))
+        with_parents.add_index(parent);
+  dealii::IndexSet ghosts = with_parents;
+  ghosts.subtract_set(owned);
+
+  exchange = ColumnExchange(owned, ghosts, triangulation.get_communicator());
+  const auto &indices = *exchange.indices();
+  hanging_nodes.clear();
+  for (const auto node : needed)
+    if (constraints.is_constrained(node))
+      {
+        HangingNode hanging{indices.global_to_local(node), {}};
+        for (const auto &[parent, weight] : *constraints.get_constraint_entries(node))
+          hanging.parents.emplace_back(indices.global_to_local(parent), weight);
+        hanging_nodes.push_back(hanging);
+      }
+  number_elements();
+}
+
+template <int dim>
+void
+StructureMesh<dim>::number_elements()
+{
+  const auto &indices = *exchange.indices();
+  const auto  faces   = outward_faces<dim>();
+  // Parents that are corners of no element here get their positions from their owners.
+  Columns positions(dim);
+  positions.resize(n_nodes());
+  elements.clear();
+  facets.clear();
+  active_cell_index.clear();
+
+  std::vector<dealii::types::global_dof_index> cell_nodes(nodes_per_element);
+  for (const auto &cell : dof_handler.active_cell_iterators())
+    if (cell->is_locally_owned())
+      {
+        cell->get_dof_indices(cell_nodes);
+        auto &element = elements.emplace_back();
+        for (unsigned int v = 0; v < nodes_per_element; ++v)
+          {
+            element[v] = indices.global_to_local(cell_nodes[v]);
+            for (int d = 0; d < dim; ++d)
+              positions[d][element[v]] = cell->vertex(v)[d];
+          }
+        active_cell_index.push_back(cell->active_cell_index());
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            {
+              BoundaryFacet<dim> facet{{}, n_elements() - 1, cell->face(f)->boundary_id(), facet_key(cell, f)};
+              for (unsigned int v = 0; v < facet.n_nodes; ++v)
+                facet.nodes[v] = element[faces[f][v]];
+              facets.push_back(facet);
+            }
+      }
+
+  exchange.update_ghosts(positions, 0, dim);
+  nodes.resize(n_nodes());
+  for (unsigned int n = 0; n < n_nodes(); ++n)
+    for (int d = 0; d < dim; ++d)
+      nodes[n][d] = positions[d][n];
+}
+
+template class StructureMesh<2>;
+template class StructureMesh<3>;
+} // namespace coracle

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exceptions.h>
+#include <coracle/structure/elements.h>
+#include <coracle/structure/update_elements.h>
+
+#include <numeric>
+#include <sstream>
+
+namespace coracle
+{
+namespace
+{
+/// Corner coordinates of an element, in the form that element_geometry.h takes.
+template <int dim>
+NodalVectors<dim, double>
+corners(const StructureMesh<dim> &mesh, const unsigned int element)
+{
+  NodalVectors<dim, double> x;
+  for (int n = 0; n < nodes_per_element<dim>; ++n)
+    for (int d = 0; d < dim; ++d)
+      x[d][n] = mesh.nodes[mesh.elements[element][n]][d];
+  return x;
+}
+
+/// Value of shape function n at Gauss point q.
+template <int dim>
+double
+shape_value(const int n, const int q)
+{
+  constexpr double near = 0.5 * (1. + 0.57735026918962576451), far = 1. - near;
+  double           value = 1.;
+  for (int d = 0; d < dim; ++d)
+    value *= (((n ^ q) >> d) & 1) == 0 ? near : far;
+  return value;
+}
+
+double
+reference_density(const MaterialVariant &material)
+{
+  return std::visit([](const auto &m) { return m.reference_density(); }, material);
+}
+} // namespace
+
+template <int dim>
+Elements<dim>::Elements(const StructureMesh<dim> &mesh,
+                        const MaterialVariant    &material,
+                        const Integration         integration,
+                        const double              hourglass_coefficient)
+  : material(material)
+  , integration(integration)
+  , n_elements(mesh.n_elements())
+  , stable_step(std::numeric_limits<double>::infinity())
+{
+  data.hourglass_coefficient = hourglass_coefficient;
+  data.n_history =
+    std::visit([](const auto &m) -> unsigned int { return m.n_history; }, material);
+  data.n_elements = n_elements;
+  allocate(mesh);
+  compute_reference(mesh);
+}
+
+template <int dim>
+void
+Elements<dim>::allocate(const StructureMesh<dim> &mesh)
+{
+  data.n_packs = (n_elements + pack_size - 1) / pack_size;
+  data.connectivity.resize(std::size_t(data.n_packs) * pack_size * n_nodes);
+  for (unsigned int i = 0; i < data.n_packs * pack_size; ++i)
+    for (int n = 0; n < n_nodes; ++n)
+      data.connectivity[(i / pack_size * n_nodes + n) * pack_size + i % pack_size] =
+        mesh.elements[std::min(i, n_elements - 1)][n];
+  data.columns = Columns(data.stress(n_points()));
+  data.columns.resize(std::size_t(data.n_packs) * pack_size);
+}
+
+template <int dim>
+void
+Elements<dim>::compute_reference(const StructureMesh<dim> &mesh)
+{
+  const double density = reference_density(material);
+  for (unsigned int i = 0; i < data.n_packs * pack_size; ++i)
+    {
+      NodalVectors<dim, double> b;
+      const double volume = mean_gradient<dim, double>(corners(mesh, std::min(i, n_elements - 1)), b);
+      data.columns[Data::volume][i] = volume;
+      data.columns[Data::mass][i]   = density * volume;
+    }
+}
+
+template <int dim>
+void
+Elements<dim>::add_mass(double *const nodal_mass, const StructureMesh<dim> &mesh) const
+{
+  const double density = reference_density(material);
+  for (unsigned int e = 0; e < n_elements; ++e)
+    {
+      NodalVectors<dim, double> modes = corners(mesh, e);
+      for (auto &component : modes)
+        {
+          to_modes<dim>(component);
+          scale_for_gauss_points<dim>(component);
+        }
+      for (int q = 0; q < n_nodes; ++q)
+        {
+          const double det = determinant<dim, double>(point_gradient<dim, double>(modes, q));
+          for (int n = 0; n < n_nodes; ++n)
+            nodal_mass[mesh.elements[e][n]] += density * det * shape_value<dim>(n, q);
+        }
+    }
+}
+
+template <int dim>
+void
+Elements<dim>::update(Columns &nodes, const double dt)
+{
+  constexpr unsigned int first = NodeColumns<dim>::internal;
+  for (unsigned int d = 0; d < dim; ++d)
+    std::fill_n(nodes[first + d], nodes.size(), 0.);
+
+  internal::Limits limits;
+  std::visit(
+    [&](const auto &m) {
+      internal::update_elements<dim>(m, integration == Integration::full, nodes, dt, data, limits);
+    },
+    material);
+
+  double rate = 0;
+  for (int l = 0; l < pack_size; ++l)
+    {
+      rate = std::max(rate, limits.rate[l]);
+      if (limits.failed_pack < data.n_packs && limits.failed[l] != 0)
+        report_failure(nodes, std::min(limits.failed_pack * pack_size + l, n_elements - 1));
+    }
+  stable_step = (rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity());
+}
+
+template <int dim>
+void
+Elements<dim>::report_failure(const Columns &nodes, const unsigned int element) const
+{
+  std::ostringstream place;
+  const auto         node = [&](const int n) {
+    return data.connectivity[(element / pack_size * n_nodes + n) * pack_size + element % pack_size];
+  };
+  for (int d = 0; d < dim; ++d)
+    {
+      double centre = 0;
+      for (int n = 0; n < n_nodes; ++n)
+        centre += nodes[NodeColumns<dim>::position + d][node(n)] / n_nodes;
+      place << (d == 0 ? "(" : ", ") << centre;
+    }
+  throw RunFailure("element turned inside out, or its stress is not a number",
+                   "element " + std::to_string(element) + " of this rank at " + place.str() + ") m",
+                   "use smaller time steps, smaller or better shaped elements, or full integration");
+}
+
+template <int dim>
+Symmetric<dim, double>
+Elements<dim>::stress(const unsigned int element) const
+{
+  Symmetric<dim, double> mean;
+  for (unsigned int q = 0; q < n_points(); ++q)
+    for (int c = 0; c < mean.size; ++c)
+      mean[c] += data.columns[data.stress(q) + c][element] / n_points();
+  return mean;
+}
+
+template <int dim>
+double
+Elements<dim>::hourglass_energy() const
+{
+  return std::accumulate(data.columns[Data::energy], data.columns[Data::energy] + n_elements, 0.);
+}
+
+template class Elements<2>;
+template class Elements<3>;
+} // namespace coracle

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/structure/inertia.h>
+#include <coracle/structure/rigid_body.h>
+
+#include <vector>
+
+namespace coracle
+{
+namespace
+{
+/// An arm in the plane or in space as a vector in space.
+template <int dim>
+dealii::Tensor<1, 3>
+in_space(const dealii::Tensor<1, dim> &v)
+{
+  dealii::Tensor<1, 3> result;
+  for (int d = 0; d < dim; ++d)
+    result[d] = v[d];
+  return result;
+}
+} // namespace
+
+template <int dim>
+RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, MPI_Comm comm)
+  : StructuralBody<dim>(body, comm)
+  , gravity(gravity)
+{
+  read_mass(body);
+  read_motion(body);
+  read_initial_motion(body);
+  set_node_velocities();
+}
+
+template <int dim>
+void
+RigidBody<dim>::read_mass(const Parameters &body)
+{
+  const VolumeIntegrals<dim> integrals = volume_integrals(this->mesh());
+  const double               mass = body.quantity("Mass"), density = body.quantity("Density");
+  if ((mass > 0) == (density > 0))
+    throw body.error("Mass",
+                     "mass of a rigid body is not clear",
+                     mass > 0 ? "both Mass and Density" : "neither Mass nor Density",
+                     "set one of them");
+  body_mass        = mass > 0 ? mass : density * integrals.volume;
+  inertia          = (body_mass / integrals.volume) * integrals.inertia();
+  reference_centre = body_centre = integrals.centre;
+}
+
+template <int dim>
+void
+RigidBody<dim>::assemble_forces(const double now)
+{
+  time = now;
+}
+
+template <int dim>
+void
+RigidBody<dim>::prescribe(const double dt)
+{
+  Vector prescribed;
+  if (velocity_function)
+    {
+      velocity_function->set_time(time + dt / 2);
+      for (int d = 0; d < dim; ++d)
+        prescribed[d] = velocity_function->value(body_centre, d);
+    }
+  else if (displacement_function)
+    {
+      displacement_function->set_time(time + dt);
+      for (int d = 0; d < dim; ++d)
+        prescribed[d] = (displacement_function->value(reference_centre, d) + reference_centre[d] -
+                         body_centre[d]) /
+                        dt;
+    }
+  for (int d = 0; d < dim; ++d)
+    if (inverse_mass_of_body[d] == 0)
+      body_velocity[d] = prescribed[d];
+
+  if (spin_function)
+    {
+      Vector3 spin;
+      spin_function->set_time(time + dt / 2);
+      for (int d = (dim == 2 ? 2 : 0); d < 3; ++d)
+        spin[d] = spin_function->value(body_centre, dim == 2 ? 0 : d);
+      rotation.prescribe(spin);
+    }
+}
+
+template <int dim>
+void
+RigidBody<dim>::predict_velocities(const double dt)
+{
+  const double before = kinetic_energy(), duration = 0.5 * (last_dt + dt);
+  for (int d = 0; d < dim; ++d)
+    if (inverse_mass_of_body[d] > 0)
+      body_velocity[d] += duration * gravity[d];
+  prescribe(dt);
+  // Gravity does it, or the supports do whatever the motion needs.
+  external_work += kinetic_energy() - before;
+  last_dt = dt;
+  set_node_velocities();
+}
+
+template <int dim>
+void
+RigidBody<dim>::add(Push &push, const unsigned int node, const Vector &value) const
+{
+  push.sum += value;
+  push.moment += moment_of<dim>(this->position(node) - body_centre, value);
+}
+
+template <int dim>
+void
+RigidBody<dim>::add_contact_impulse(const unsigned int node, const Vector &value)
+{
+  add(impulse, node, value);
+  this->add_vector(Node::impulse, node, value);
+}
+
+template <int dim>
+void
+RigidBody<dim>::add_correction(const unsigned int node, const Vector &value)
+{
+  add(correction, node, value);
+}
+
+template <int dim>
+typename RigidBody<dim>::Push
+RigidBody<dim>::total(Push &push) const
+{
+  std::vector<double> sums(dim + 3);
+  for (int d = 0; d < dim; ++d)
+    sums[d] = push.sum[d];
+  for (int d = 0; d < 3; ++d)
+    sums[dim + d] = push.moment[d];
+  push = {};
+  dealii::Utilities::MPI::sum(sums, this->mesh().communicator(), sums);
+  Push result;
+  for (int d = 0; d < dim; ++d)
+    result.sum[d] = sums[d];
+  for (int d = 0; d < 3; ++d)
+    result.moment[d] = sums[dim + d];
+  return result;
+}
+
+template <int dim>
+void
+RigidBody<dim>::apply_contact_impulses()
+{
+  const Push    all    = total(impulse);
+  const double  before = kinetic_energy();
+  const Vector  velocity_before = body_velocity;
+  const Vector3 spin_before     = spin();
+  for (int d = 0; d < dim; ++d)
+    body_velocity[d] += inverse_mass_of_body[d] * all.sum[d];
+  rotation.add_angular_impulse(all.moment);
+
+  const double work = 0.5 * (all.sum * (velocity_before + body_velocity) +
+                             all.moment * (spin_before + spin()));
+  contact_work += work;
+  // What does not become kinetic energy went into the supports.
+  external_work += kinetic_energy() - before - work;
+  last_force  = all.sum / last_dt;
+  last_moment = all.moment / last_dt;
+
+  Columns &nodes = this->node_columns;
+  this->mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < nodes.size(); ++n)
+      {
+        nodes[Node::contact_force + d][n] = nodes[Node::impulse + d][n] / last_dt;
+        nodes[Node::impulse + d][n]       = 0;
+      }
+  set_node_velocities();
+}
+
+template <int dim>
+void
+RigidBody<dim>::apply_corrections()
+{
+  const Push all = total(correction);
+  for (int d = 0; d < dim; ++d)
+    body_centre[d] += inverse_mass_of_body[d] * all.sum[d];
+  rotation.turn(rotation.inverse_inertia() * all.moment);
+}
+
+template <int dim>
+void
+RigidBody<dim>::move(const double dt)
+{
+  body_centre += dt * body_velocity;
+  rotation.advance(dt);
+  set_node_positions();
+}
+
+template <int dim>
+void
+RigidBody<dim>::set_node_velocities()
+{
+  const Vector3 now = spin();
+  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+    this->set_vector(Node::velocity,
+                     n,
+                     body_velocity + velocity_from_spin<dim>(now, this->position(n) - body_centre));
+}
+
+template <int dim>
+void
+RigidBody<dim>::set_node_positions()
+{
+  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+    {
+      const Vector3 arm =
+        rotation.turned(in_space<dim>(this->mesh().nodes[n] - reference_centre));
+      dealii::Point<dim> x = body_centre;
+      for (int d = 0; d < dim; ++d)
+        x[d] += arm[d];
+      this->set_vector(Node::increment, n, x - this->position(n));
+      this->set_vector(Node::position, n, x);
+    }
+}
+
+template <int dim>
+double
+RigidBody<dim>::kinetic_energy() const
+{
+  return 0.5 * body_mass * body_velocity.norm_square() + rotation.kinetic_energy();
+}
+
+template <int dim>
+Energies
+RigidBody<dim>::energies() const
+{
+  Energies result;
+  result.kinetic       = kinetic_energy();
+  result.contact_work  = contact_work;
+  result.external_work = external_work;
+  return result;
+}
+
+template <int dim>
+BodySummary<dim>
+RigidBody<dim>::summary() const
+{
+  return {body_mass, body_centre, body_velocity, last_force, last_moment, spin()};
+}
+
+template class RigidBody<2>;
+template class RigidBody<3>;
+} // namespace coracle

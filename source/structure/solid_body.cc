@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/structure/solid_body.h>
+
+#include <vector>
+
+namespace coracle
+{
+template <int dim>
+void
+SolidBody<dim>::declare(Declaration &section)
+{
+  SolidBody::declare_surface(section);
+  section.text("Material", "", "name of a subsection of Materials");
+  section.choice("Integration",
+                 "full",
+                 {"full", "one point"},
+                 "full: 2^dim points with averaged volume change (F-bar), does not lock; one point: "
+                 "several times faster, with hourglass control");
+  section.when("Integration", "one point")
+    .quantity("Hourglass coefficient",
+              "0.05",
+              "1",
+              "kappa",
+              "stiffness against modes that one point does not see; 1 is about full integration",
+              0.,
+              1.);
+  BoundaryConditions<dim>::declare(section);
+  Loads<dim>::declare(section);
+  Declaration &damping = section.section("Damping", "Force -alpha m v, to find states of rest");
+  damping.quantity("Coefficient", "0", "1/s", "alpha", "0 is without damping", 0.);
+  damping.quantity("Start", "0", "s", "", "no damping before");
+  damping.quantity("End", "1e300", "s", "", "no damping after");
+}
+
+template <int dim>
+SolidBody<dim>::SolidBody(const Parameters      &body,
+                          const MaterialLibrary &materials,
+                          const Vector          &gravity,
+                          MPI_Comm               comm)
+  : StructuralBody<dim>(body, comm)
+  , elements(*this->body_mesh,
+             materials.get(body.text("Material"), body),
+             body.choice("Integration") == "full" ? Integration::full : Integration::one_point,
+             body.choice("Integration") == "full" ? 0. : body.quantity("Hourglass coefficient"))
+  , boundary_conditions(body, *this->body_mesh)
+  , loads(body, *this->body_mesh)
+  , gravity(gravity)
+  , damping(body.section("Damping").quantity("Coefficient"))
+  , damping_start(body.section("Damping").quantity("Start"))
+  , damping_end(body.section("Damping").quantity("End"))
+{
+  set_mass();
+  const Vector initial_velocity = body.template point<dim>("Initial velocity");
+  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+    this->set_vector(Node::velocity, n, initial_velocity);
+  update_stress(1.);
+}
+
+template <int dim>
+void
+SolidBody<dim>::set_mass()
+{
+  Columns &nodes = this->node_columns;
+  elements.add_mass(nodes[Node::mass], this->mesh());
+  condense(Node::mass, 1);
+  this->mesh().exchange.sum_to_owners(nodes, Node::mass, 1);
+  this->mesh().exchange.update_ghosts(nodes, Node::mass, 1);
+  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+    for (int d = 0; d < dim; ++d)
+      nodes[Node::inverse_mass + d][n] = nodes[Node::mass][n] > 0 ? 1. / nodes[Node::mass][n] : 0.;
+  boundary_conditions.constrain(nodes);
+  // What contact feels at a hanging node: its parents, moved together by their weights.
+  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+    for (int d = 0; d < dim; ++d)
+      {
+        double &inverse = nodes[Node::inverse_mass + d][hanging.node] = 0;
+        for (const auto &[parent, weight] : hanging.parents)
+          inverse += weight * weight * nodes[Node::inverse_mass + d][parent];
+      }
+}
+
+template <int dim>
+void
+SolidBody<dim>::condense(const unsigned int first, const unsigned int n_columns)
+{
+  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+    for (unsigned int c = first; c < first + n_columns; ++c)
+      {
+        double *const column = this->node_columns[c];
+        for (const auto &[parent, weight] : hanging.parents)
+          column[parent] += weight * column[hanging.node];
+        column[hanging.node] = 0;
+      }
+}
+
+template <int dim>
+void
+SolidBody<dim>::distribute(const unsigned int first)
+{
+  this->mesh().exchange.update_ghosts(this->node_columns, first, dim);
+  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+    for (unsigned int c = first; c < first + dim; ++c)
+      {
+        double *const column = this->node_columns[c];
+        column[hanging.node] = 0;
+        for (const auto &[parent, weight] : hanging.parents)
+          column[hanging.node] += weight * column[parent];
+      }
+}
+
+template <int dim>
+void
+SolidBody<dim>::assemble_forces(const double now)
+{
+  Columns &nodes = this->node_columns;
+  time           = now;
+  for (int d = 0; d < dim; ++d)
+    {
+      double *const external = nodes[Node::external + d];
+      std::fill_n(external, nodes.size(), 0.);
+      for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+        external[n] = nodes[Node::mass][n] * gravity[d];
+    }
+  loads.add_forces(nodes, time);
+  condense(Node::internal, 2 * dim);
+  this->mesh().exchange.sum_to_owners(nodes, Node::internal, 2 * dim);
+}
+
+template <int dim>
+double
+SolidBody<dim>::damping_at(const double when) const
+{
+  return when >= damping_start && when <= damping_end ? damping : 0.;
+}
+
+template <int dim>
+void
+SolidBody<dim>::predict_velocities(const double dt)
+{
+  kick(0.5 * (last_dt + dt), dt);
+  last_dt = dt;
+  distribute(Node::velocity);
+}
+
+template <int dim>
+void
+SolidBody<dim>::kick(const double duration, const double dt)
+{
+  Columns           &nodes   = this->node_columns;
+  const unsigned int n_owned = this->mesh().n_owned_nodes();
+  const double       half    = 0.5 * damping_at(time) * duration;
+
+  // Books need the velocities before; the impulse column is free until contact.
+  for (int d = 0; d < dim; ++d)
+    std::copy_n(nodes[Node::velocity + d], n_owned, nodes[Node::impulse + d]);
+  for (int d = 0; d < dim; ++d)
+    {
+      double *const v = nodes[Node::velocity + d];
+      for (unsigned int n = 0; n < n_owned; ++n)
+        v[n] = (v[n] * (1. - half) +
+                duration * nodes[Node::inverse_mass + d][n] *
+                  (nodes[Node::internal + d][n] + nodes[Node::external + d][n])) /
+               (1. + half);
+    }
+  boundary_conditions.prescribe_velocities(nodes, time, dt);
+
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < n_owned; ++n)
+      {
+        double      &before = nodes[Node::impulse + d][n];
+        const double after = nodes[Node::velocity + d][n], mass = nodes[Node::mass][n],
+                     mean     = 0.5 * (before + after),
+                     internal = duration * nodes[Node::internal + d][n] * mean,
+                     external = duration * nodes[Node::external + d][n] * mean,
+                     gained   = mass * (after - before) * mean;
+        books.strain -= internal;
+        if (nodes[Node::inverse_mass + d][n] > 0)
+          {
+            books.external_work += external;
+            books.damping += 2. * half * mass * mean * mean;
+          }
+        else
+          // A support does whatever work the motion needs.
+          books.external_work += gained - internal;
+        before = 0;
+      }
+}
+
+template <int dim>
+void
+SolidBody<dim>::add_contact_impulse(const unsigned int node, const Vector &impulse)
+{
+  this->add_vector(Node::impulse, node, impulse);
+}
+
+template <int dim>
+void
+SolidBody<dim>::apply_contact_impulses()
+{
+  Columns &nodes = this->node_columns;
+  condense(Node::impulse, dim);
+  this->mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+      {
+        double      &impulse = nodes[Node::impulse + d][n], &v = nodes[Node::velocity + d][n];
+        const double before = v, inverse_mass = nodes[Node::inverse_mass + d][n];
+        v += impulse * inverse_mass;
+        const double work = impulse * 0.5 * (before + v);
+        books.contact_work += work;
+        if (inverse_mass == 0)
+          books.external_work -= work;
+        nodes[Node::contact_force + d][n] = impulse / last_dt;
+        impulse                           = 0;
+      }
+  distribute(Node::velocity);
+}
+
+template <int dim>
+void
+SolidBody<dim>::add_correction(const unsigned int node, const Vector &correction)
+{
+  this->add_vector(Node::correction, node, correction);
+}
+
+template <int dim>
+void
+SolidBody<dim>::apply_corrections()
+{
+  // From here to `move` the column holds displacements.
+  Columns &nodes = this->node_columns;
+  condense(Node::correction, dim);
+  this->mesh().exchange.sum_to_owners(nodes, Node::correction, dim);
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+      nodes[Node::correction + d][n] *= nodes[Node::inverse_mass + d][n];
+  distribute(Node::correction);
+}
+
+template <int dim>
+void
+SolidBody<dim>::move(const double dt)
+{
+  Columns &nodes = this->node_columns;
+  for (int d = 0; d < dim; ++d)
+    {
+      const double *const v = nodes[Node::velocity + d];
+      double *const       x = nodes[Node::position + d], *const dx = nodes[Node::increment + d],
+                   *const correction = nodes[Node::correction + d];
+      for (unsigned int n = 0; n < nodes.size(); ++n)
+        {
+          dx[n] = dt * v[n] + correction[n];
+          x[n] += dx[n];
+          correction[n] = 0;
+        }
+    }
+}
+
+template <int dim>
+void
+SolidBody<dim>::update_stress(const double dt)
+{
+  elements.update(this->node_columns, dt);
+}
+
+template <int dim>
+Energies
+SolidBody<dim>::energies() const
+{
+  const Columns &nodes   = this->node_columns;
+  double         kinetic = 0;
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+      kinetic += 0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] * nodes[Node::velocity + d][n];
+  std::vector<double> sums = {kinetic,
+                              books.strain,
+                              elements.hourglass_energy(),
+                              books.damping,
+                              books.contact_work,
+                              books.external_work};
+  dealii::Utilities::MPI::sum(sums, this->mesh().communicator(), sums);
+  return {sums[0], sums[1] - sums[2], sums[2], sums[3], sums[4], sums[5]};
+}
+
+template <int dim>
+BodySummary<dim>
+SolidBody<dim>::summary() const
+{
+  // mass, m x, m v, force, moment about the origin
+  std::vector<double> sums(1 + 3 * dim + 3);
+  for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+    {
+      const double mass  = this->node_columns[Node::mass][n];
+      const Vector force = this->contact_force(n);
+      sums[0] += mass;
+      for (int d = 0; d < dim; ++d)
+        {
+          sums[1 + d] += mass * this->position(n)[d];
+          sums[1 + dim + d] += mass * this->velocity(n)[d];
+          sums[1 + 2 * dim + d] += force[d];
+        }
+      const dealii::Tensor<1, 3> moment = moment_of<dim>(this->position(n), force);
+      for (int d = 0; d < 3; ++d)
+        sums[1 + 3 * dim + d] += moment[d];
+    }
+  dealii::Utilities::MPI::sum(sums, this->mesh().communicator(), sums);
+
+  BodySummary<dim> result;
+  result.mass = sums[0];
+  for (int d = 0; d < dim; ++d)
+    {
+      result.centre[d]        = sums[1 + d] / sums[0];
+      result.velocity[d]      = sums[1 + dim + d] / sums[0];
+      result.contact_force[d] = sums[1 + 2 * dim + d];
+    }
+  for (int d = 0; d < 3; ++d)
+    result.contact_moment[d] = sums[1 + 3 * dim + d];
+  result.contact_moment -= moment_of<dim>(result.centre, result.contact_force);
+  return result;
+}
+
+template class SolidBody<2>;
+template class SolidBody<3>;
+} // namespace coracle

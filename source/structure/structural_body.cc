@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/structure/structural_body.h>
+
+#include <algorithm>
+
+namespace coracle
+{
+template <int dim>
+void
+StructuralBody<dim>::declare_surface(Declaration &section)
+{
+  StructureMesh<dim>::declare(section.section("Mesh", "Elements and nodes of the body"));
+  section.quantity("Thickness",
+                   "0",
+                   "m",
+                   "d",
+                   "of the contact surface: points are kept d/2 and their own radius away",
+                   0.);
+  section.quantity("Friction", "0", "1", "mu", "Coulomb friction coefficient against points", 0.);
+  section.list("Initial velocity", "", "m/s", "v_0", "at time zero; zero if empty");
+}
+
+template <int dim>
+StructuralBody<dim>::StructuralBody(const Parameters &body, MPI_Comm comm)
+  : body_name(body.name())
+  , body_mesh(std::make_unique<StructureMesh<dim>>(body.section("Mesh"), comm))
+  , node_columns(NodeColumns<dim>::n_columns)
+  , surface_thickness(body.quantity("Thickness"))
+  , surface_friction(body.quantity("Friction"))
+{
+  const auto &mesh = *body_mesh;
+  node_columns.resize(mesh.n_nodes());
+  for (unsigned int n = 0; n < mesh.n_nodes(); ++n)
+    {
+      set_vector(NodeColumns<dim>::reference, n, mesh.nodes[n]);
+      set_vector(NodeColumns<dim>::position, n, mesh.nodes[n]);
+    }
+  for (const auto &facet : mesh.facets)
+    nodes_on_surface.insert(nodes_on_surface.end(), facet.nodes.begin(), facet.nodes.end());
+  std::sort(nodes_on_surface.begin(), nodes_on_surface.end());
+  nodes_on_surface.erase(std::unique(nodes_on_surface.begin(), nodes_on_surface.end()),
+                         nodes_on_surface.end());
+}
+
+template class StructuralBody<2>;
+template class StructuralBody<3>;
+} // namespace coracle

@@ -31,6 +31,8 @@ struct SurfaceBody
   double friction = 0;
   /// Index into the rigid bodies of the unknowns, or -1: facets move with their nodes.
   int rigid_body = -1;
+  /// Index of this sheet's column in PointSet::side; not used by closed bodies.
+  int sheet = -1;
 };
 
 /// A node of the surface. Several ranks may hold copies; `key` tells that they are the same.
@@ -52,9 +54,9 @@ struct SurfaceNode
 template <int dim>
 struct Facet
 {
-  /// Indices into Surface::nodes. 2-D: the body lies to the left of 0 -> 1, so the outward
-  /// normal is the tangent turned clockwise. 3-D: counter-clockwise seen from outside.
-  /// A triangle repeats its last node.
+  /// Indices into Surface::nodes; facets are neighbours where they name the same node. 2-D: the
+  /// body lies to the left of 0 -> 1, so the outward normal is the tangent turned clockwise. 3-D:
+  /// counter-clockwise seen from outside. A triangle repeats its last node.
   std::array<unsigned int, vertices_per_facet<dim>> nodes;
   /// Index into Surface::bodies.
   unsigned int body = 0;

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/facet_exchange.h>
+#include <coracle/contact/local_search.h>
+#include <coracle/contact/row_builder.h>
+#include <coracle/contact/solver.h>
+
+namespace coracle::contact
+{
+/// Contact as a line of the statistics; the same on all ranks.
+struct ContactReport
+{
+  unsigned long n_contacts = 0;
+  /// Smallest g - R of all contacts [m]; 0 if there are none.
+  double       worst_gap = 0;
+  SolverReport solver;
+  /// How often candidates were looked for anew, and how many pairs of point and facet this rank
+  /// keeps.
+  unsigned int  n_rebuilds   = 0;
+  unsigned long n_candidates = 0;
+};
+
+/**
+ * Contact of a step, from surfaces and points to impulses:
+ *
+ *   contacts.find(surface, points, dt);                  // 5: facets to where points are, search
+ *   contacts.build_rows(point_row, unknown);             // points as sums over the caller's
+ * unknowns contacts.solve(rigid_bodies, dt); contacts.point_impulses(...); // onto the caller's
+ * unknowns contacts.surface_impulses(...), rigid_impulses(...)  // onto the structure
+ *
+ * Everything but build_rows, contacts and point_impulses is collective: ranks
+ * without points or facets take part.
+ */
+template <int dim>
+class ContactSystem
+{
+public:
+  using Vector = dealii::Tensor<1, dim>;
+
+  ContactSystem(const ContactOptions &options, MPI_Comm communicator);
+
+  /// Facets or nodes have come, gone or been renumbered: search anew at the next find().
+  void surface_changed() { changed = true; }
+  /// Points have come, gone or been renumbered: search anew at the next find().
+  void points_renumbered() { changed = true; }
+
+  /**
+   * Finds the contacts at the start of the step.
+   * @param owned  facets that this rank owns, nodes at their places with their predicted velocities
+   * @param points all material points of this rank, a set for each body
+   */
+  void find(const Surface<dim> &owned, const std::vector<PointSet<dim>> &points, const double dt);
+
+  /// All contacts of this rank's points, sorted by set and point.
+  const std::vector<Contact<dim>> &contacts() const { return list; }
+
+  /// The facets that contacts refer to; not the same numbering as the owned surface.
+  const Surface<dim> &surface() const { return facets.surface(); }
+
+  /// Facets that the points of a set may touch.
+  const Candidates &candidates(const unsigned int set) const { return search.candidates(set); }
+
+  /**
+   * Rows of all contacts.
+   * @param point_row (set, point, entries): appends the point as a sum of weight times one of the
+   * caller's unknowns, numbered densely from 0; an unknown may appear repeatedly
+   * @param unknown   (number): velocity, inverse mass, key and owner of one of the caller's
+   * unknowns
+   */
+  template <typename PointRow, typename UnknownOf>
+  void build_rows(const PointRow &point_row, const UnknownOf &unknown)
+  {
+    rows.build(list, surface(), point_row, unknown);
+  }
+
+  void solve(const std::vector<RigidUnknown<dim>> &rigid, const double dt);
+
+  /// Per contact, as acting on the point.
+  const Impulses<dim> &impulses() const { return solver.impulses(); }
+
+  /**
+   * Calls action(number, impulse, correction) for each of the caller's unknowns
+   * that contacts of this rank act on, with the sum over these contacts [N s, kg m].
+   * An unknown on several ranks gets the sum of what they have.
+   */
+  template <typename Action>
+  void point_impulses(const Action &action) const
+  {
+    for (unsigned int i = 0; i < unknown_impulse.size(); ++i)
+      if (!rows.origins()[i].is_surface)
+        action(rows.origins()[i].number, unknown_impulse[i], unknown_correction[i]);
+  }
+
+  /// Adds what acts on the nodes of the owned surface (not on rigid bodies) [N s, kg m].
+  /// Collective.
+  void surface_impulses(std::vector<Vector> &impulse, std::vector<Vector> &correction) const;
+
+  /// What acts on a rigid body: impulse, and its moment about the centre; likewise the correction.
+  struct RigidImpulse
+  {
+    Vector               impulse;
+    dealii::Tensor<1, 3> moment;
+    Vector               correction;
+    dealii::Tensor<1, 3> correction_moment;
+  };
+  /// Per rigid body, the same on all ranks.
+  const std::vector<RigidImpulse> &rigid_impulses() const { return rigid_sums; }
+
+  const ContactReport &report() const { return statistics; }
+
+private:
+  /// Greatest speeds, radius and movement since the last search, over all ranks.
+  struct Extremes
+  {
+    double changed, point_speed, node_speed, radius, movement;
+  };
+  Extremes measure(const Surface<dim> &owned, const std::vector<PointSet<dim>> &points) const;
+  void     rebuild(const Surface<dim>               &owned,
+                   const std::vector<PointSet<dim>> &points,
+                   const Extremes                   &extremes,
+                   const double                      travel);
+  void     sum_up(const std::vector<RigidUnknown<dim>> &rigid);
+
+  ContactOptions     options;
+  MPI_Comm           communicator;
+  FacetExchange<dim> facets;
+  GlobalSearch<dim>  search;
+  LocalSearch<dim>   local_search;
+  RowBuilder<dim>    rows;
+  Solver<dim>        solver;
+
+  bool changed = true;
+  /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].
+  double                          reach = 0, used = 0;
+  std::vector<dealii::Point<dim>> positions_at_search;
+
+  std::vector<Contact<dim>>                 list;
+  std::vector<typename WarmStart<dim>::Key> keys;
+  std::vector<Vector>                       unknown_impulse, unknown_correction;
+  std::vector<RigidImpulse>                 rigid_sums;
+  ContactReport                             statistics;
+};
+} // namespace coracle::contact

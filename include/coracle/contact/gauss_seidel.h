@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/delassus.h>
+
+namespace coracle::contact
+{
+/// When an iteration ends.
+struct IterationLimits
+{
+  /// Residual, as a velocity [m/s].
+  double       tolerance;
+  unsigned int iterations;
+};
+
+/// How an iteration ended.
+struct IterationReport
+{
+  unsigned int iterations = 0;
+  /// Largest complementarity residual, as a velocity [m/s].
+  double residual  = 0;
+  bool   converged = true;
+};
+
+/**
+ * Solves, for all contacts together,
+ *   u_n - target >= 0,  P_n >= 0,  P_n (u_n - target) = 0      (no penetration, no adhesion)
+ *   |P_t| <= mu P_n, u_t = 0 or P_t opposite to u_t             (Coulomb)
+ * with u = J (v + M^-1 J^T P), by projected Gauss-Seidel on accumulated impulses
+ * P: an increment may be negative, the sum may not.
+ *
+ * Particles that share grid nodes make nearly dependent rows on which plain
+ * sweeps creep. So a sweep serves as the search direction of a nonlinear
+ * conjugate gradient method, restarted whenever its steps grow
+ * (Silcowitz-Hansen, Niebe & Erleben, A nonsmooth nonlinear conjugate gradient
+ * method for interactive contact force problems, 2010); the last step before
+ * the end is always a plain sweep, so that P is admissible.
+ */
+template <int dim>
+class GaussSeidel
+{
+public:
+  using Vector = dealii::Tensor<1, dim>;
+
+  explicit GaussSeidel(MPI_Comm communicator, const bool accelerate = true);
+
+  /**
+   * Collective.
+   * @param target    least normal velocity per contact [m/s]
+   * @param friction  false: normal impulses only
+   * @param impulses  start value in, solution out [N s]
+   * @param v         velocities without P in, with P out
+   */
+  IterationReport solve(Delassus<dim>             &delassus,
+                        const std::vector<double> &target,
+                        const bool                 friction,
+                        const IterationLimits     &limits,
+                        std::vector<Vector>       &impulses,
+                        Velocities<dim>           &v);
+
+private:
+  /// How much a sweep has changed: sum of squares in energy norm [J], largest as a velocity [m/s].
+  struct Size
+  {
+    double square = 0, largest = 0;
+  };
+
+  /// One pass over the contacts; fills `step`.
+  Size sweep(const Delassus<dim>       &delassus,
+             const std::vector<double> &target,
+             const bool                 friction,
+             std::vector<Vector>       &impulses,
+             Velocities<dim>           &v);
+
+  /// Largest violation of the conditions above with everything held fixed, on this rank [m/s].
+  double residual(const Delassus<dim>       &delassus,
+                  const std::vector<double> &target,
+                  const bool                 friction,
+                  const std::vector<Vector> &impulses,
+                  const Velocities<dim>     &v) const;
+
+  /// impulses += beta * direction, direction = beta * direction + step, velocities likewise.
+  void extrapolate(const double beta, std::vector<Vector> &impulses, Velocities<dim> &v);
+
+  MPI_Comm            communicator;
+  bool                accelerate;
+  std::vector<Vector> step, direction;
+  Velocities<dim>     before, velocity_direction;
+};
+} // namespace coracle::contact

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/base/parameters.h>
+
+namespace coracle::contact
+{
+/// Which conditions the contacts ask for; see Solver.
+enum class Law
+{
+  split,
+  blended
+};
+
+/// What the section `Contact` of a parameter file says.
+struct ContactOptions
+{
+  /// Default of the surfaces' Coulomb coefficient [1].
+  double friction = 0;
+  Law    law      = Law::split;
+  /// Share of the depth that the blended law turns into velocity, alpha [1].
+  double alpha = 0.3;
+  /// Residual at which the solver stops, relative to the greatest approach speed [1].
+  double       tolerance          = 1e-6;
+  unsigned int maximum_iterations = 200;
+  bool         accelerate         = true;
+  /// Remove remaining depth by moving positions (law split).
+  bool         position_correction = true;
+  unsigned int position_iterations = 50;
+  /// Distance by which candidates reach farther than needed, in contact distances R (largest point
+  /// radius plus half thickness) [1].
+  double skin = 1;
+
+  static void declare(Declaration &section);
+
+  ContactOptions() = default;
+  explicit ContactOptions(const Parameters &section);
+};
+} // namespace coracle::contact

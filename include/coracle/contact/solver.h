@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/gauss_seidel.h>
+#include <coracle/contact/options.h>
+#include <coracle/contact/warm_start.h>
+
+namespace coracle::contact
+{
+/// How the contacts of a step came out; the same on all ranks.
+struct SolverReport
+{
+  unsigned long   n_contacts = 0;
+  IterationReport velocity, position;
+  /// Greatest predicted approach speed, to which the residual is relative [m/s].
+  double scale = 0;
+  /// Greatest amount by which a contact is still too fast after the solve [m/s].
+  double worst_violation = 0;
+  /// Greatest displacement by the position solve [m].
+  double largest_correction = 0;
+};
+
+/**
+ * Impulses of all contacts of a step, on all ranks together.
+ *
+ * Law `split`: at velocity level u_n >= -(g - R)/dt while the gap g is wider
+ * than R, and u_n >= 0 from there on, so that no point gets nearer than R within
+ * the step and nothing is thrown out; Coulomb friction on the same impulses.
+ * What depth there is (curved paths, faces that turn) is removed by a second
+ * solve with the same rows, g + dt u_n + c_n >= R, whose result moves positions
+ * only.
+ *
+ * Law `blended`: Song, Liu & Zhang (2020), Eqs. 62-65, see solve_blended().
+ */
+template <int dim>
+class Solver
+{
+public:
+  Solver(const ContactOptions &options, MPI_Comm communicator);
+
+  /**
+   * Collective, also for ranks without contacts.
+   * @param keys identity of each contact from step to step
+   */
+  void solve(const std::vector<Contact<dim>>                 &contacts,
+             const std::vector<typename WarmStart<dim>::Key> &keys,
+             const Rows                                      &rows,
+             const std::vector<Unknown<dim>>                 &unknowns,
+             const std::vector<RigidUnknown<dim>>            &rigid,
+             const double                                     dt);
+
+  const Impulses<dim> &impulses() const { return result; }
+  const SolverReport  &report() const { return statistics; }
+
+  /// Velocities of the unknowns and rigid bodies with contact, in the order they were given.
+  const Velocities<dim> &velocities() const { return velocity; }
+
+private:
+  void solve_split(const std::vector<Contact<dim>> &contacts, const double dt);
+  void solve_positions(const std::vector<Contact<dim>> &contacts, const double dt);
+  void solve_blended_law(const std::vector<Contact<dim>> &contacts, const double dt);
+  void measure(const std::vector<Contact<dim>> &contacts);
+
+  ContactOptions      options;
+  MPI_Comm            communicator;
+  Delassus<dim>       delassus;
+  GaussSeidel<dim>    gauss_seidel;
+  WarmStart<dim>      warm_start;
+  Velocities<dim>     velocity, displacement_rate;
+  std::vector<double> target;
+  std::vector<bool>   active;
+  Impulses<dim>       result;
+  SolverReport        statistics;
+  double              old_dt = 0;
+};
+} // namespace coracle::contact

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace coracle::contact
+{
+/**
+ * The impulses of the last step by point and facet, to start the next solve
+ * from: a hash table that is refilled every step without allocating.
+ */
+template <int dim>
+class WarmStart
+{
+public:
+  struct Key
+  {
+    std::uint64_t point, facet;
+  };
+
+  /// Impulse that this contact had, zero if it is new.
+  dealii::Tensor<1, dim> find(const Key &key) const;
+
+  /// Forget the old impulses and keep these.
+  void store(const std::vector<Key> &keys, const std::vector<dealii::Tensor<1, dim>> &impulses);
+
+private:
+  struct Slot
+  {
+    Key                    key;
+    dealii::Tensor<1, dim> impulse;
+    bool                   used = false;
+  };
+  std::size_t       place(const Key &key) const;
+  std::vector<Slot> slots;
+};
+} // namespace coracle::contact

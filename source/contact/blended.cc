@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/blended.h>
+
+#include <cmath>
+
+namespace coracle::contact
+{
+namespace
+{
+/// What one contact adds to its impulse, alone with the true masses.
+template <int dim>
+dealii::Tensor<1, dim>
+increment(const typename Delassus<dim>::Row &row,
+          const dealii::Tensor<1, dim>      &impulse,
+          const dealii::Tensor<1, dim>      &u,
+          const double                       wanted)
+{
+  const double           more   = std::max(0., wanted - u * row.normal) / row.true_inverse_mass;
+  dealii::Tensor<1, dim> result = more * row.normal;
+  if (row.friction > 0)
+    {
+      const double           normal     = impulse * row.normal;
+      dealii::Tensor<1, dim> tangential = impulse - normal * row.normal;
+      const auto             old        = tangential;
+      tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
+      const double limit = row.friction * (normal + more), size = tangential.norm();
+      if (size > limit)
+        tangential *= limit / size;
+      result += tangential - old;
+    }
+  return result;
+}
+} // namespace
+
+template <int dim>
+IterationReport
+solve_blended(Delassus<dim>                       &delassus,
+              const std::vector<double>           &wanted,
+              const std::vector<bool>             &active,
+              const IterationLimits               &limits,
+              std::vector<dealii::Tensor<1, dim>> &impulses,
+              Velocities<dim>                     &v,
+              MPI_Comm                             communicator)
+{
+  const auto     &rows = delassus.rows();
+  Velocities<dim> before;
+  IterationReport report;
+  for (;;)
+    {
+      before          = v;
+      report.residual = 0;
+      for (std::size_t c = 0; c < rows.size(); ++c)
+        if (active[c] && !rows[c].fixed)
+          {
+            const auto u    = delassus.relative_velocity(rows[c], before);
+            const auto step = increment<dim>(rows[c], impulses[c], u, wanted[c]);
+            report.residual = std::max(report.residual, step.norm() * rows[c].true_inverse_mass);
+            impulses[c] += step;
+            delassus.apply(rows[c], step, v);
+          }
+      MPI_Allreduce(MPI_IN_PLACE, &report.residual, 1, MPI_DOUBLE, MPI_MAX, communicator);
+      double unused = 0;
+      delassus.synchronise(v, before, unused);
+      report.converged = (report.residual <= limits.tolerance);
+      if (report.converged || report.iterations >= limits.iterations)
+        return report;
+      ++report.iterations;
+    }
+}
+
+template IterationReport solve_blended(Delassus<2> &,
+                                       const std::vector<double> &,
+                                       const std::vector<bool> &,
+                                       const IterationLimits &,
+                                       std::vector<dealii::Tensor<1, 2>> &,
+                                       Velocities<2> &,
+                                       MPI_Comm);
+template IterationReport solve_blended(Delassus<3> &,
+                                       const std::vector<double> &,
+                                       const std::vector<bool> &,
+                                       const IterationLimits &,
+                                       std::vector<dealii::Tensor<1, 3>> &,
+                                       Velocities<3> &,
+                                       MPI_Comm);
+} // namespace coracle::contact

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/contact_system.h>
+#include <coracle/contact/messages.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace coracle::contact
+{
+namespace
+{
+/// What is used up of the skin in a step, more than predicted because contact changes velocities.
+constexpr double movement_margin = 1.1;
+/// Candidates reach this much farther than the present speeds ask for.
+constexpr double reach_margin = 1.25;
+/// Boxes per point set that tell other ranks where this rank's points are.
+constexpr unsigned int n_reach_boxes = 8;
+
+template <int dim>
+double
+maximum_speed(const PointSet<dim> &points)
+{
+  if (points.maximum_speed >= 0 || points.velocity[0] == nullptr)
+    return std::max(0., points.maximum_speed);
+  double square = 0;
+  for (unsigned int i = 0; i < points.n_points; ++i)
+    square = std::max(square, points.point_velocity(i).norm_square());
+  return std::sqrt(square);
+}
+
+template <int dim>
+double
+maximum_radius(const PointSet<dim> &points)
+{
+  if (points.n_points == 0 || points.radius_column == nullptr)
+    return points.n_points == 0 ? 0. : points.constant_radius;
+  return *std::max_element(points.radius_column, points.radius_column + points.n_points);
+}
+
+/// Boxes around stretches of consecutive points: sorted points make them tight.
+template <int dim>
+void
+append_boxes(const PointSet<dim> &points, const double margin, std::vector<Box> &boxes)
+{
+  for (unsigned int b = 0; b < n_reach_boxes; ++b)
+    {
+      const unsigned int begin = std::uint64_t(points.n_points) * b / n_reach_boxes,
+                         end   = std::uint64_t(points.n_points) * (b + 1) / n_reach_boxes;
+      if (begin == end)
+        continue;
+      Box box;
+      for (int d = 0; d < dim; ++d)
+        {
+          const auto range =
+            std::minmax_element(points.position[d] + begin, points.position[d] + end);
+          box.lower[d] = *range.first - margin;
+          box.upper[d] = *range.second + margin;
+        }
+      boxes.push_back(box);
+    }
+}
+} // namespace
+
+template <int dim>
+ContactSystem<dim>::ContactSystem(const ContactOptions &options, MPI_Comm communicator)
+  : options(options)
+  , communicator(communicator)
+  , facets(communicator)
+  , solver(options, communicator)
+{}
+
+template <int dim>
+typename ContactSystem<dim>::Extremes
+ContactSystem<dim>::measure(const Surface<dim>               &owned,
+                            const std::vector<PointSet<dim>> &points) const
+{
+  Extremes   here{changed ? 1. : 0., 0, 0, 0, 0};
+  const bool comparable = (positions_at_search.size() == owned.nodes.size());
+  if (!comparable)
+    here.changed = 1;
+  for (const auto &set : points)
+    {
+      here.point_speed = std::max(here.point_speed, maximum_speed(set));
+      here.radius      = std::max(here.radius, maximum_radius(set));
+    }
+  for (unsigned int i = 0; i < owned.nodes.size(); ++i)
+    {
+      here.node_speed = std::max(here.node_speed, owned.nodes[i].velocity.norm_square());
+      if (comparable)
+        here.movement =
+          std::max(here.movement, owned.nodes[i].position.distance_square(positions_at_search[i]));
+    }
+  here.node_speed = std::sqrt(here.node_speed);
+  here.movement   = std::sqrt(here.movement);
+  MPI_Allreduce(MPI_IN_PLACE, &here, 5, MPI_DOUBLE, MPI_MAX, communicator);
+  return here;
+}
+
+template <int dim>
+void
+ContactSystem<dim>::rebuild(const Surface<dim>               &owned,
+                            const std::vector<PointSet<dim>> &points,
+                            const Extremes                   &extremes,
+                            const double                      travel)
+{
+  double thickness = 0;
+  for (const auto &body : owned.bodies)
+    thickness = std::max(thickness, body.thickness);
+  reach = reach_margin * travel + options.skin * (extremes.radius + 0.5 * thickness);
+  used  = 0;
+
+  std::vector<Box> boxes;
+  if (n_ranks(communicator) == 1)
+    {
+      boxes.resize(1);
+      boxes[0].lower.fill(std::numeric_limits<double>::lowest());
+      boxes[0].upper.fill(std::numeric_limits<double>::max());
+    }
+  else
+    for (const auto &set : points)
+      append_boxes(set, maximum_radius(set) + reach, boxes);
+  facets.rebuild(owned, boxes);
+  local_search.reinit(facets.surface());
+  search.rebuild(facets.surface(), points, reach);
+
+  positions_at_search.resize(owned.nodes.size());
+  for (unsigned int i = 0; i < owned.nodes.size(); ++i)
+    positions_at_search[i] = owned.nodes[i].position;
+  changed = false;
+
+  // Points far from all sheets belong to no side.
+  statistics.n_candidates = 0;
+  for (unsigned int s = 0; s < points.size(); ++s)
+    {
+      const auto &near = search.candidates(s).point;
+      for (double *side : points[s].side)
+        for (unsigned int i = 0, next = 0; i < points[s].n_points; ++i)
+          if (next < near.size() && near[next] == i)
+            ++next;
+          else
+            side[i] = 0;
+      statistics.n_candidates += search.candidates(s).facet.size();
+    }
+  ++statistics.n_rebuilds;
+}
+
+template <int dim>
+void
+ContactSystem<dim>::find(const Surface<dim>               &owned,
+                         const std::vector<PointSet<dim>> &points,
+                         const double                      dt)
+{
+  const Extremes extremes = measure(owned, points);
+  const double   travel   = 2 * dt * (extremes.point_speed + extremes.node_speed);
+  if (extremes.changed > 0 || used + extremes.movement + travel > reach)
+    rebuild(owned, points, extremes, travel);
+  else
+    facets.update(owned);
+  used += movement_margin * dt * extremes.point_speed;
+
+  // The band only needs the speeds of points that have something to touch.
+  typename LocalSearch<dim>::Motion motion;
+  motion.dt         = dt;
+  motion.node_speed = extremes.node_speed;
+  for (unsigned int s = 0; s < points.size(); ++s)
+    for (const unsigned int p : search.candidates(s).point)
+      motion.point_speed = std::max(motion.point_speed, points[s].point_velocity(p).norm_square());
+  motion.point_speed = std::sqrt(motion.point_speed);
+
+  list.clear();
+  keys.clear();
+  local_search.update();
+  for (unsigned int s = 0; s < points.size(); ++s)
+    local_search.find(points[s], s, search.candidates(s), motion, list);
+
+  statistics.worst_gap = std::numeric_limits<double>::max();
+  for (const auto &contact : list)
+    {
+      keys.push_back({points[contact.set].id(contact.point), surface().facets[contact.facet].key});
+      statistics.worst_gap = std::min(statistics.worst_gap, contact.gap - contact.distance);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_gap, 1, MPI_DOUBLE, MPI_MIN, communicator);
+  if (statistics.worst_gap == std::numeric_limits<double>::max())
+    statistics.worst_gap = 0;
+}
+
+template <int dim>
+void
+ContactSystem<dim>::solve(const std::vector<RigidUnknown<dim>> &rigid, const double dt)
+{
+  solver.solve(list, keys, rows.rows(), rows.unknowns(), rigid, dt);
+  statistics.solver     = solver.report();
+  statistics.n_contacts = solver.report().n_contacts;
+  used += movement_margin * solver.report().largest_correction;
+  sum_up(rigid);
+}
+
+template <int dim>
+void
+ContactSystem<dim>::sum_up(const std::vector<RigidUnknown<dim>> &rigid)
+{
+  unknown_impulse.assign(rows.unknowns().size(), {});
+  unknown_correction.assign(rows.unknowns().size(), {});
+  rigid_sums.assign(rigid.size(), {});
+  const auto &row    = rows.rows();
+  const auto &result = solver.impulses();
+  for (std::size_t c = 0; c < list.size(); ++c)
+    {
+      for (unsigned int side = 0; side < 2; ++side)
+        for (std::size_t e = row.begin[2 * c + side]; e < row.begin[2 * c + side + 1]; ++e)
+          {
+            const double weight = (side == 0 ? 1 : -1) * row.entries[e].weight;
+            unknown_impulse[row.entries[e].unknown] += weight * result.impulse[c];
+            unknown_correction[row.entries[e].unknown] += weight * result.correction[c];
+          }
+      if (row.rigid_body[c] >= 0)
+        {
+          auto        &sum = rigid_sums[row.rigid_body[c]];
+          const Vector arm =
+            list[c].place + list[c].gap * list[c].normal - rigid[row.rigid_body[c]].centre;
+          sum.impulse -= result.impulse[c];
+          sum.moment -= Delassus<dim>::torque(arm, result.impulse[c]);
+          sum.correction -= result.correction[c];
+          sum.correction_moment -= Delassus<dim>::torque(arm, result.correction[c]);
+        }
+    }
+  if (!rigid.empty())
+    MPI_Allreduce(MPI_IN_PLACE,
+                  rigid_sums.data(),
+                  rigid_sums.size() * sizeof(RigidImpulse) / sizeof(double),
+                  MPI_DOUBLE,
+                  MPI_SUM,
+                  communicator);
+}
+
+template <int dim>
+void
+ContactSystem<dim>::surface_impulses(std::vector<Vector> &impulse,
+                                     std::vector<Vector> &correction) const
+{
+  std::vector<Vector> nodal_impulse(surface().nodes.size()),
+    nodal_correction(surface().nodes.size());
+  for (unsigned int i = 0; i < unknown_impulse.size(); ++i)
+    if (rows.origins()[i].is_surface)
+      {
+        nodal_impulse[rows.origins()[i].number]    = unknown_impulse[i];
+        nodal_correction[rows.origins()[i].number] = unknown_correction[i];
+      }
+  facets.add_to_owners(nodal_impulse, impulse);
+  facets.add_to_owners(nodal_correction, correction);
+}
+
+template class ContactSystem<2>;
+template class ContactSystem<3>;
+} // namespace coracle::contact

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/delassus.h>
+#include <coracle/contact/messages.h>
+
+#include <cmath>
+
+namespace coracle::contact
+{
+template <int dim>
+Delassus<dim>::Delassus(MPI_Comm communicator) : communicator(communicator), shared(communicator)
+{}
+
+template <int dim>
+dealii::Tensor<1, dim>
+Delassus<dim>::cross(const dealii::Tensor<1, 3> &spin, const Vector &arm)
+{
+  if constexpr (dim == 3)
+    return dealii::cross_product_3d(spin, arm);
+  else
+    {
+      Vector result;
+      result[0] = -spin[2] * arm[1];
+      result[1] = spin[2] * arm[0];
+      return result;
+    }
+}
+
+template <int dim>
+dealii::Tensor<1, 3>
+Delassus<dim>::torque(const Vector &arm, const Vector &impulse)
+{
+  if constexpr (dim == 3)
+    return dealii::cross_product_3d(arm, impulse);
+  else
+    {
+      dealii::Tensor<1, 3> result;
+      result[2] = arm[0] * impulse[1] - arm[1] * impulse[0];
+      return result;
+    }
+}
+
+template <int dim>
+void
+Delassus<dim>::apply_rigid(const Row &row, const Vector &impulse, Velocities<dim> &v) const
+{
+  const int b = row.rigid_body;
+  for (int d = 0; d < dim; ++d)
+    v.rigid[b][d] -= rigid_inverse_mass[b][d] * impulse[d];
+  v.spin[b] -= rigid_inverse_inertia[b] * torque(row.arm, impulse);
+}
+
+template <int dim>
+dealii::Tensor<1, dim>
+Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split) const
+{
+  Vector result;
+  for (std::size_t e = row.begin; e < row.end; ++e)
+    {
+      const unsigned int i = entries[e].unknown;
+      const double       factor =
+        entries[e].weight * entries[e].weight / (split ? 1 : shared.multiplicity(i));
+      for (int d = 0; d < dim; ++d)
+        result[d] += factor * inverse_mass[i][d] * impulse[d];
+    }
+  if (row.rigid_body >= 0)
+    {
+      const int    b = row.rigid_body;
+      const double n = (split ? 1 : rigid_multiplicity[b]);
+      for (int d = 0; d < dim; ++d)
+        result[d] += rigid_inverse_mass[b][d] / n * impulse[d];
+      result += cross(rigid_inverse_inertia[b] * torque(row.arm, impulse), row.arm) / n;
+    }
+  return result;
+}
+
+template <int dim>
+void
+Delassus<dim>::prepare(Row &row) const
+{
+  row.normal_response     = response(row, row.normal);
+  row.normal_inverse_mass = row.normal * row.normal_response;
+  row.true_inverse_mass   = row.normal * response(row, row.normal, false);
+
+  Vector t1;
+  if constexpr (dim == 2)
+    {
+      t1[0]                       = -row.normal[1];
+      t1[1]                       = row.normal[0];
+      row.tangential_inverse_mass = t1 * response(row, t1);
+    }
+  else
+    {
+      // The largest eigenvalue of the tangential block keeps the update from overshooting.
+      unsigned int smallest = 0;
+      for (int d = 1; d < dim; ++d)
+        if (std::abs(row.normal[d]) < std::abs(row.normal[smallest]))
+          smallest = d;
+      t1[smallest] = 1;
+      t1 -= (t1 * row.normal) * row.normal;
+      t1 /= t1.norm();
+      const Vector t2 = dealii::cross_product_3d(row.normal, t1), k1 = response(row, t1),
+                   k2 = response(row, t2);
+      const double a = t1 * k1, b = t2 * k2, c = t1 * k2;
+      row.tangential_inverse_mass = 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c);
+    }
+  double largest = 0;
+  for (std::size_t e = row.begin; e < row.end; ++e)
+    largest += entries[e].weight * entries[e].weight * inverse_mass[entries[e].unknown].norm();
+  if (row.rigid_body >= 0)
+    largest += rigid_inverse_mass[row.rigid_body].norm();
+  row.fixed = !(row.normal_inverse_mass > 1e-10 * largest);
+}
+
+template <int dim>
+void
+Delassus<dim>::share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid)
+{
+  buffer.assign(rigid.size(), 0.);
+  for (const int b : rows.rigid_body)
+    if (b >= 0)
+      buffer[b] = 1;
+  if (!rigid.empty())
+    MPI_Allreduce(MPI_IN_PLACE, buffer.data(), buffer.size(), MPI_DOUBLE, MPI_SUM, communicator);
+  rigid_inverse_mass.resize(rigid.size());
+  rigid_inverse_inertia.resize(rigid.size());
+  predicted.rigid.resize(rigid.size());
+  predicted.spin.resize(rigid.size());
+  for (unsigned int b = 0; b < rigid.size(); ++b)
+    {
+      // Ranks without contact at a body take no part in its change.
+      const double n           = std::max(1., buffer[b]);
+      rigid_inverse_mass[b]    = n * rigid[b].inverse_mass;
+      rigid_inverse_inertia[b] = n * rigid[b].inverse_inertia;
+      if (dim == 2)
+        for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int j = 0; j < 3; ++j)
+            if (i != 2 || j != 2)
+              rigid_inverse_inertia[b][i][j] = 0;
+      predicted.rigid[b] = rigid[b].velocity;
+      predicted.spin[b]  = rigid[b].spin;
+    }
+  rigid_multiplicity = buffer;
+}
+
+template <int dim>
+void
+Delassus<dim>::reinit(const std::vector<Contact<dim>>      &contacts,
+                      const Rows                           &rows,
+                      const std::vector<Unknown<dim>>      &unknowns,
+                      const std::vector<RigidUnknown<dim>> &rigid)
+{
+  shared.reinit(unknowns);
+  share_rigid_bodies(rows, rigid);
+  inverse_mass.resize(unknowns.size());
+  predicted.nodes.resize(unknowns.size());
+  for (unsigned int i = 0; i < unknowns.size(); ++i)
+    {
+      inverse_mass[i]    = double(shared.multiplicity(i)) * unknowns[i].inverse_mass;
+      predicted.nodes[i] = unknowns[i].velocity;
+    }
+
+  entries = rows.entries;
+  list.resize(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    {
+      for (std::size_t e = rows.begin[2 * c + 1]; e < rows.begin[2 * c + 2]; ++e)
+        entries[e].weight *= -1;
+      Row &row       = list[c];
+      row.begin      = rows.begin[2 * c];
+      row.end        = rows.begin[2 * c + 2];
+      row.rigid_body = rows.rigid_body[c];
+      row.normal     = contacts[c].normal;
+      row.friction   = contacts[c].friction;
+      if (row.rigid_body >= 0)
+        row.arm =
+          contacts[c].place + contacts[c].gap * contacts[c].normal - rigid[row.rigid_body].centre;
+      prepare(row);
+    }
+}
+
+template <int dim>
+void
+Delassus<dim>::set_zero(Velocities<dim> &v) const
+{
+  v.nodes.assign(predicted.nodes.size(), Vector());
+  v.rigid.assign(predicted.rigid.size(), Vector());
+  v.spin.assign(predicted.spin.size(), dealii::Tensor<1, 3>());
+}
+
+template <int dim>
+void
+Delassus<dim>::synchronise(Velocities<dim> &v, const Velocities<dim> &before, double &scalar)
+{
+  if (n_ranks(communicator) == 1)
+    return;
+  shared.average_change(v.nodes, before.nodes);
+
+  buffer.clear();
+  buffer.push_back(scalar);
+  for (unsigned int b = 0; b < v.rigid.size(); ++b)
+    {
+      const double share = 1. / std::max(1., rigid_multiplicity[b]);
+      for (int d = 0; d < dim; ++d)
+        buffer.push_back(share * (v.rigid[b][d] - before.rigid[b][d]));
+      for (int d = 0; d < 3; ++d)
+        buffer.push_back(share * (v.spin[b][d] - before.spin[b][d]));
+    }
+  MPI_Allreduce(MPI_IN_PLACE, buffer.data(), buffer.size(), MPI_DOUBLE, MPI_SUM, communicator);
+  const double *in = buffer.data();
+  scalar           = *in++;
+  for (unsigned int b = 0; b < v.rigid.size(); ++b)
+    {
+      for (int d = 0; d < dim; ++d)
+        v.rigid[b][d] = before.rigid[b][d] + *in++;
+      for (int d = 0; d < 3; ++d)
+        v.spin[b][d] = before.spin[b][d] + *in++;
+    }
+}
+
+template class Delassus<2>;
+template class Delassus<3>;
+} // namespace coracle::contact

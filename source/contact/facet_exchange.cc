@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/facet_exchange.h>
+#include <coracle/contact/global_search.h>
+#include <coracle/contact/messages.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace coracle::contact
+{
+namespace
+{
+constexpr int tag_update = 4721, tag_return = 4722;
+
+/// Boxes of all ranks, by rank.
+std::vector<std::vector<Box>>
+gather(const std::vector<Box> &mine, MPI_Comm communicator)
+{
+  return all_to_all(std::vector<std::vector<Box>>(n_ranks(communicator), mine), communicator);
+}
+} // namespace
+
+template <int dim>
+FacetExchange<dim>::FacetExchange(MPI_Comm communicator) : communicator(communicator)
+{}
+
+template <int dim>
+void
+FacetExchange<dim>::rebuild(const Surface<dim> &owned, const std::vector<Box> &reach)
+{
+  const auto boxes = gather(reach, communicator);
+  const int  n     = n_ranks(communicator);
+  sent.clear();
+  std::vector<std::vector<SurfaceNode<dim>>> nodes(n);
+  std::vector<std::vector<FacetMessage>>     facets(n);
+  std::vector<unsigned int>                  place(owned.nodes.size());
+  constexpr unsigned int                     none = -1;
+  for (int r = 0; r < n; ++r)
+    {
+      Partner partner{r, {}, {}, {}};
+      std::fill(place.begin(), place.end(), none);
+      for (const auto &facet : owned.facets)
+        {
+          const Box box = facet_box(owned, facet, 0.5 * owned.bodies[facet.body].thickness);
+          if (std::none_of(boxes[r].begin(), boxes[r].end(), [&](const Box &b) {
+                return overlap(b, box);
+              }))
+            continue;
+          FacetMessage message{{}, facet.body, facet.key};
+          for (unsigned int k = 0; k < facet.nodes.size(); ++k)
+            {
+              const unsigned int node = facet.nodes[k];
+              if (place[node] == none)
+                {
+                  place[node] = partner.index.size();
+                  partner.index.push_back(node);
+                  nodes[r].push_back(owned.nodes[node]);
+                }
+              message.nodes[k] = place[node];
+            }
+          facets[r].push_back(message);
+        }
+      if (!partner.index.empty())
+        sent.push_back(std::move(partner));
+    }
+  local.bodies = owned.bodies;
+  merge(all_to_all(nodes, communicator), all_to_all(facets, communicator));
+}
+
+template <int dim>
+void
+FacetExchange<dim>::merge(const std::vector<std::vector<SurfaceNode<dim>>> &nodes,
+                          const std::vector<std::vector<FacetMessage>>     &facets)
+{
+  local.nodes.clear();
+  local.facets.clear();
+  received.clear();
+  std::unordered_map<std::uint64_t, unsigned int> known;
+  // Rank that each node's impulses return to.
+  std::vector<int> home;
+  for (unsigned int r = 0; r < nodes.size(); ++r)
+    if (!nodes[r].empty())
+      {
+        Partner partner{static_cast<int>(r), {}, {}, {}};
+        for (const auto &node : nodes[r])
+          {
+            const auto entry = known.emplace(node.key, local.nodes.size());
+            if (entry.second)
+              {
+                local.nodes.push_back(node);
+                home.push_back(r);
+              }
+            else if (node.owner == static_cast<int>(r))
+              home[entry.first->second] = r;
+            partner.index.push_back(entry.first->second);
+          }
+        for (const auto &message : facets[r])
+          {
+            Facet<dim> facet;
+            for (unsigned int k = 0; k < facet.nodes.size(); ++k)
+              facet.nodes[k] = partner.index[message.nodes[k]];
+            facet.body = message.body;
+            facet.key  = message.key;
+            local.facets.push_back(facet);
+          }
+        received.push_back(std::move(partner));
+      }
+  for (auto &partner : received)
+    for (const unsigned int i : partner.index)
+      partner.returns.push_back(home[i] == partner.rank);
+}
+
+template <int dim>
+void
+FacetExchange<dim>::exchange(std::vector<Partner> &from,
+                             std::vector<Partner> &to,
+                             const int             tag) const
+{
+  std::vector<MPI_Request> requests;
+  const int                me = my_rank(communicator);
+  for (auto &in : to)
+    if (in.rank != me)
+      {
+        requests.emplace_back();
+        MPI_Irecv(in.buffer.data(),
+                  in.buffer.size(),
+                  MPI_DOUBLE,
+                  in.rank,
+                  tag,
+                  communicator,
+                  &requests.back());
+      }
+  for (auto &out : from)
+    if (out.rank != me)
+      {
+        requests.emplace_back();
+        MPI_Isend(out.buffer.data(),
+                  out.buffer.size(),
+                  MPI_DOUBLE,
+                  out.rank,
+                  tag,
+                  communicator,
+                  &requests.back());
+      }
+    else
+      for (auto &in : to)
+        if (in.rank == me)
+          in.buffer = out.buffer;
+  MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+template <int dim>
+void
+FacetExchange<dim>::update(const Surface<dim> &owned)
+{
+  constexpr unsigned int n_values = 3 * dim;
+  local.bodies                    = owned.bodies;
+  for (auto &out : sent)
+    {
+      out.buffer.resize(n_values * out.index.size());
+      double *value = out.buffer.data();
+      for (const unsigned int i : out.index)
+        for (int d = 0; d < dim; ++d)
+          {
+            *value++ = owned.nodes[i].position[d];
+            *value++ = owned.nodes[i].velocity[d];
+            *value++ = owned.nodes[i].inverse_mass[d];
+          }
+    }
+  for (auto &in : received)
+    in.buffer.resize(n_values * in.index.size());
+  exchange(sent, received, tag_update);
+  for (const auto &in : received)
+    {
+      const double *value = in.buffer.data();
+      for (const unsigned int i : in.index)
+        for (int d = 0; d < dim; ++d)
+          {
+            local.nodes[i].position[d]     = *value++;
+            local.nodes[i].velocity[d]     = *value++;
+            local.nodes[i].inverse_mass[d] = *value++;
+          }
+    }
+}
+
+template <int dim>
+void
+FacetExchange<dim>::add_to_owners(const std::vector<dealii::Tensor<1, dim>> &values,
+                                  std::vector<dealii::Tensor<1, dim>>       &owned) const
+{
+  for (auto &out : received)
+    {
+      out.buffer.resize(dim * out.index.size());
+      for (unsigned int i = 0; i < out.index.size(); ++i)
+        for (int d = 0; d < dim; ++d)
+          out.buffer[dim * i + d] = (out.returns[i] ? values[out.index[i]][d] : 0.);
+    }
+  for (auto &in : sent)
+    in.buffer.resize(dim * in.index.size());
+  exchange(received, sent, tag_return);
+  for (const auto &in : sent)
+    for (unsigned int i = 0; i < in.index.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        owned[in.index[i]][d] += in.buffer[dim * i + d];
+}
+
+template class FacetExchange<2>;
+template class FacetExchange<3>;
+} // namespace coracle::contact

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/gauss_seidel.h>
+#include <coracle/contact/messages.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace coracle::contact
+{
+namespace
+{
+/// The next impulse of one contact, everything else held fixed.
+template <int dim>
+dealii::Tensor<1, dim>
+project(const typename Delassus<dim>::Row &row,
+        const dealii::Tensor<1, dim>      &old_impulse,
+        dealii::Tensor<1, dim>             u,
+        const double                       target,
+        const bool                         friction)
+{
+  const double old_normal = old_impulse * row.normal;
+  const double normal =
+    std::max(0., old_normal - (u * row.normal - target) / row.normal_inverse_mass);
+  if (!friction || row.friction == 0 || normal == 0)
+    return normal * row.normal;
+
+  // Friction sees what the normal impulse has changed.
+  u += (normal - old_normal) * row.normal_response;
+  dealii::Tensor<1, dim> tangential = old_impulse - old_normal * row.normal;
+  tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
+  const double limit = row.friction * normal, size = tangential.norm();
+  if (size > limit)
+    tangential *= limit / size;
+  return normal * row.normal + tangential;
+}
+} // namespace
+
+template <int dim>
+GaussSeidel<dim>::GaussSeidel(MPI_Comm communicator, const bool accelerate)
+  : communicator(communicator), accelerate(accelerate)
+{}
+
+template <int dim>
+typename GaussSeidel<dim>::Size
+GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
+                        const std::vector<double> &target,
+                        const bool                 friction,
+                        std::vector<Vector>       &impulses,
+                        Velocities<dim>           &v)
+{
+  Size        result;
+  const auto &rows = delassus.rows();
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    {
+      const auto &row = rows[c];
+      step[c]         = Vector();
+      if (row.fixed)
+        continue;
+      const Vector u      = delassus.relative_velocity(row, v);
+      const Vector next   = project<dim>(row, impulses[c], u, target[c], friction);
+      step[c]             = next - impulses[c];
+      impulses[c]         = next;
+      const double square = step[c].norm_square();
+      if (square == 0)
+        continue;
+      delassus.apply(row, step[c], v);
+      result.square += square * row.normal_inverse_mass;
+      result.largest = std::max(result.largest, std::sqrt(square) * row.normal_inverse_mass);
+    }
+  return result;
+}
+
+template <int dim>
+double
+GaussSeidel<dim>::residual(const Delassus<dim>       &delassus,
+                           const std::vector<double> &target,
+                           const bool                 friction,
+                           const std::vector<Vector> &impulses,
+                           const Velocities<dim>     &v) const
+{
+  double      result = 0;
+  const auto &rows   = delassus.rows();
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (!rows[c].fixed)
+      {
+        const Vector u    = delassus.relative_velocity(rows[c], v);
+        const Vector next = project<dim>(rows[c], impulses[c], u, target[c], friction);
+        result = std::max(result, (next - impulses[c]).norm() * rows[c].normal_inverse_mass);
+      }
+  return result;
+}
+
+template <int dim>
+void
+GaussSeidel<dim>::extrapolate(const double beta, std::vector<Vector> &impulses, Velocities<dim> &v)
+{
+  for (std::size_t c = 0; c < impulses.size(); ++c)
+    {
+      impulses[c] += beta * direction[c];
+      direction[c] = beta * direction[c] + step[c];
+    }
+  // `before` still holds the velocities before the sweep.
+  for (std::size_t i = 0; i < v.nodes.size(); ++i)
+    before.nodes[i] = v.nodes[i] - before.nodes[i];
+  for (std::size_t i = 0; i < v.nodes.size(); ++i)
+    {
+      v.nodes[i] += beta * velocity_direction.nodes[i];
+      velocity_direction.nodes[i] = beta * velocity_direction.nodes[i] + before.nodes[i];
+    }
+  for (std::size_t b = 0; b < v.rigid.size(); ++b)
+    {
+      const Vector               change      = v.rigid[b] - before.rigid[b];
+      const dealii::Tensor<1, 3> spin_change = v.spin[b] - before.spin[b];
+      v.rigid[b] += beta * velocity_direction.rigid[b];
+      v.spin[b] += beta * velocity_direction.spin[b];
+      velocity_direction.rigid[b] = beta * velocity_direction.rigid[b] + change;
+      velocity_direction.spin[b]  = beta * velocity_direction.spin[b] + spin_change;
+    }
+}
+
+template <int dim>
+IterationReport
+GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
+                        const std::vector<double> &target,
+                        const bool                 friction,
+                        const IterationLimits     &limits,
+                        std::vector<Vector>       &impulses,
+                        Velocities<dim>           &v)
+{
+  const auto &rows = delassus.rows();
+  step.resize(rows.size());
+  direction.assign(rows.size(), Vector());
+  delassus.set_zero(velocity_direction);
+
+  // Velocities with the impulses to start from.
+  before        = v;
+  double unused = 0;
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (rows[c].fixed)
+      impulses[c] = Vector();
+    else if (impulses[c].norm_square() > 0)
+      delassus.apply(rows[c], impulses[c], v);
+  delassus.synchronise(v, before, unused);
+
+  IterationReport report;
+  const auto      finished = [&] {
+    report.residual = residual(delassus, target, friction, impulses, v);
+    MPI_Allreduce(MPI_IN_PLACE, &report.residual, 1, MPI_DOUBLE, MPI_MAX, communicator);
+    report.converged = (report.residual <= limits.tolerance);
+    return report.converged || report.iterations >= limits.iterations;
+  };
+  if (finished())
+    return report;
+  for (double old_square = 0;;)
+    {
+      before    = v;
+      Size size = sweep(delassus, target, friction, impulses, v);
+      delassus.synchronise(v, before, size.square);
+      MPI_Allreduce(MPI_IN_PLACE, &size.largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
+      ++report.iterations;
+      // The changes of a sweep are a cheap first indication.
+      if ((size.largest <= limits.tolerance || report.iterations >= limits.iterations) &&
+          finished())
+        return report;
+      if (accelerate)
+        extrapolate(size.square < old_square ? size.square / old_square : 0., impulses, v);
+      old_square = size.square;
+    }
+}
+
+template class GaussSeidel<2>;
+template class GaussSeidel<3>;
+} // namespace coracle::contact

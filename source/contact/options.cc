@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/options.h>
+
+namespace coracle::contact
+{
+void
+ContactOptions::declare(Declaration &section)
+{
+  section.quantity(
+    "Friction", "0", "1", "mu", "Coulomb coefficient of surfaces that do not give their own", 0);
+  section.choice(
+    "Law",
+    "split",
+    {"split", "blended"},
+    "What contacts ask for. split: no approach beyond contact within the step, depth removed by "
+    "moving "
+    "positions only; blended: velocity and depth in one force (Song, Liu & Zhang 2020, Eq. 65)");
+  section.when("Law", "blended")
+    .quantity(
+      "Blend", "0.3", "1", "alpha", "Share of the depth that is turned into velocity", 0, 1);
+  section.when("Law", "split")
+    .flag("Position correction",
+          true,
+          "Remove remaining depth by moving positions, never velocities");
+  section.when("Law", "split")
+    .integer("Maximum position iterations",
+             50,
+             "Sweeps of the position correction after which it goes on in the next step",
+             1);
+  section.quantity("Tolerance",
+                   "1e-6",
+                   "1",
+                   "",
+                   "Residual of the contact conditions at which the solver stops, relative to the "
+                   "greatest approach speed",
+                   0,
+                   1);
+  section.integer("Maximum iterations",
+                  200,
+                  "Sweeps of the contact solver after which a step counts as not converged",
+                  1);
+  section.flag("Accelerate", true, "Conjugate directions between the sweeps of the contact solver");
+  section.quantity("Skin",
+                   "1",
+                   "1",
+                   "",
+                   "How much farther than needed candidates are looked for, in contact distances; "
+                   "more means rarer but longer searches",
+                   0.01);
+  section.choice("Search",
+                 "aabb tree",
+                 {"aabb tree"},
+                 "Global search: a tree of axis-aligned boxes around the facets (CGAL)");
+  section.choice("Local search",
+                 "nearest on surface",
+                 {"nearest on surface"},
+                 "Contacts are the local minima of the distance to the whole surface");
+}
+
+ContactOptions::ContactOptions(const Parameters &section)
+{
+  friction           = section.quantity("Friction");
+  law                = (section.choice("Law") == "blended" ? Law::blended : Law::split);
+  tolerance          = section.quantity("Tolerance");
+  maximum_iterations = section.integer("Maximum iterations");
+  accelerate         = section.flag("Accelerate");
+  skin               = section.quantity("Skin");
+  if (law == Law::blended)
+    alpha = section.quantity("Blend");
+  else
+    {
+      position_correction = section.flag("Position correction");
+      position_iterations = section.integer("Maximum position iterations");
+    }
+}
+} // namespace coracle::contact

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/row_builder.h>
+
+namespace coracle::contact
+{
+template <int dim>
+void
+RowBuilder<dim>::clear()
+{
+  for (const auto &origin : sources)
+    (origin.is_surface ? node_place : place)[origin.number] = none;
+  list.clear();
+  all.clear();
+  sources.clear();
+}
+
+template <int dim>
+void
+RowBuilder<dim>::add(const unsigned int unknown, const double weight)
+{
+  if (weight == 0)
+    return;
+  // Hanging nodes bring the same parent repeatedly; the solver's diagonal needs the sum.
+  for (std::size_t e = list.begin.back(); e < list.entries.size(); ++e)
+    if (list.entries[e].unknown == unknown)
+      {
+        list.entries[e].weight += weight;
+        return;
+      }
+  list.entries.push_back({unknown, weight});
+}
+
+template <int dim>
+void
+RowBuilder<dim>::add_facet_side(const Contact<dim> &contact, const Surface<dim> &surface)
+{
+  const auto &facet = surface.facets[contact.facet];
+  const int   rigid = surface.bodies[facet.body].rigid_body;
+  if (rigid < 0)
+    for (unsigned int k = 0; k < facet.nodes.size(); ++k)
+      if (contact.weights[k] != 0)
+        {
+          const auto   &node   = surface.nodes[facet.nodes[k]];
+          unsigned int &number = local_number(node_place, facet.nodes[k]);
+          if (number == none)
+            {
+              number = all.size();
+              sources.push_back({true, facet.nodes[k]});
+              all.push_back({node.velocity, node.inverse_mass, node.key, node.owner});
+            }
+          add(number, contact.weights[k]);
+        }
+  list.begin.push_back(list.entries.size());
+  list.rigid_body.push_back(rigid);
+}
+
+template class RowBuilder<2>;
+template class RowBuilder<3>;
+} // namespace coracle::contact

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/blended.h>
+#include <coracle/contact/solver.h>
+
+#include <algorithm>
+
+namespace coracle::contact
+{
+namespace
+{
+/// Depth that the position solve may leave, relative to the contact distance.
+constexpr double position_tolerance = 1e-3;
+} // namespace
+
+template <int dim>
+Solver<dim>::Solver(const ContactOptions &options, MPI_Comm communicator)
+  : options(options)
+  , communicator(communicator)
+  , delassus(communicator)
+  , gauss_seidel(communicator, options.accelerate)
+{}
+
+template <int dim>
+void
+Solver<dim>::solve(const std::vector<Contact<dim>>                 &contacts,
+                   const std::vector<typename WarmStart<dim>::Key> &keys,
+                   const Rows                                      &rows,
+                   const std::vector<Unknown<dim>>                 &unknowns,
+                   const std::vector<RigidUnknown<dim>>            &rigid,
+                   const double                                     dt)
+{
+  Assert(rows.n_contacts() == contacts.size() && rows.begin.size() == 2 * contacts.size() + 1,
+         dealii::ExcMessage("One row per side and contact"));
+  statistics            = SolverReport();
+  statistics.n_contacts = contacts.size();
+  result.impulse.assign(contacts.size(), {});
+  result.correction.assign(contacts.size(), {});
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.n_contacts, 1, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
+  if (statistics.n_contacts == 0)
+    {
+      warm_start.store(keys, result.impulse);
+      return;
+    }
+
+  delassus.reinit(contacts, rows, unknowns, rigid);
+  velocity = delassus.predicted;
+  measure(contacts);
+  if (options.law == Law::blended)
+    solve_blended_law(contacts, dt);
+  else
+    {
+      // Impulses grow with the step.
+      if (old_dt > 0)
+        for (std::size_t c = 0; c < contacts.size(); ++c)
+          result.impulse[c] = dt / old_dt * warm_start.find(keys[c]);
+      solve_split(contacts, dt);
+      if (options.position_correction)
+        solve_positions(contacts, dt);
+    }
+  warm_start.store(keys, result.impulse);
+  old_dt = dt;
+}
+
+template <int dim>
+void
+Solver<dim>::measure(const std::vector<Contact<dim>> &contacts)
+{
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    statistics.scale =
+      std::max(statistics.scale,
+               -(delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal));
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.scale, 1, MPI_DOUBLE, MPI_MAX, communicator);
+}
+
+template <int dim>
+void
+Solver<dim>::solve_split(const std::vector<Contact<dim>> &contacts, const double dt)
+{
+  target.resize(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    target[c] = -std::max(0., contacts[c].gap - contacts[c].distance) / dt;
+  // Where nothing approaches, no impulse is the answer.
+  if (statistics.scale <= 0)
+    std::fill(result.impulse.begin(), result.impulse.end(), dealii::Tensor<1, dim>());
+  statistics.velocity =
+    gauss_seidel.solve(delassus,
+                       target,
+                       true,
+                       {options.tolerance * statistics.scale, options.maximum_iterations},
+                       result.impulse,
+                       velocity);
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    if (!delassus.rows()[c].fixed)
+      statistics.worst_violation =
+        std::max(statistics.worst_violation,
+                 target[c] -
+                   delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal);
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
+}
+
+template <int dim>
+void
+Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const double dt)
+{
+  // In terms of a displacement per dt, so that the rows serve as they are.
+  double deepest = 0, largest_distance = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    {
+      const double u =
+        delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal;
+      target[c] = (contacts[c].distance - contacts[c].gap) / dt - u;
+      if (!delassus.rows()[c].fixed)
+        deepest = std::max(deepest, target[c]);
+      largest_distance = std::max(largest_distance, contacts[c].distance);
+    }
+  double both[2] = {deepest, largest_distance};
+  MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_DOUBLE, MPI_MAX, communicator);
+  const double tolerance = position_tolerance * both[1] / dt;
+  if (both[0] <= tolerance)
+    return;
+  delassus.set_zero(displacement_rate);
+  statistics.position = gauss_seidel.solve(delassus,
+                                           target,
+                                           false,
+                                           {tolerance, options.position_iterations},
+                                           result.correction,
+                                           displacement_rate);
+  for (auto &correction : result.correction)
+    correction *= dt;
+  for (const auto &rate : displacement_rate.nodes)
+    statistics.largest_correction = std::max(statistics.largest_correction, dt * rate.norm());
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.largest_correction, 1, MPI_DOUBLE, MPI_MAX, communicator);
+}
+
+template <int dim>
+void
+Solver<dim>::solve_blended_law(const std::vector<Contact<dim>> &contacts, const double dt)
+{
+  target.resize(contacts.size());
+  active.resize(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    {
+      active[c] = (contacts[c].gap < contacts[c].distance);
+      target[c] = options.alpha * (contacts[c].distance - contacts[c].gap) / dt;
+    }
+  const double scale  = std::max(statistics.scale, 1e-300);
+  statistics.velocity = solve_blended(delassus,
+                                      target,
+                                      active,
+                                      {options.tolerance * scale, options.maximum_iterations},
+                                      result.impulse,
+                                      velocity,
+                                      communicator);
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    if (active[c] && !delassus.rows()[c].fixed)
+      statistics.worst_violation =
+        std::max(statistics.worst_violation,
+                 target[c] -
+                   delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal);
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
+}
+
+template class Solver<2>;
+template class Solver<3>;
+} // namespace coracle::contact

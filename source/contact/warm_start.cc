@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/warm_start.h>
+
+namespace coracle::contact
+{
+template <int dim>
+std::size_t
+WarmStart<dim>::place(const Key &key) const
+{
+  // The number of slots is a power of two; the multipliers spread consecutive ids.
+  std::uint64_t hash = key.point * 0x9E3779B97F4A7C15ull + key.facet * 0xC2B2AE3D27D4EB4Full;
+  hash ^= hash >> 29;
+  return hash & (slots.size() - 1);
+}
+
+template <int dim>
+dealii::Tensor<1, dim>
+WarmStart<dim>::find(const Key &key) const
+{
+  if (!slots.empty())
+    for (std::size_t i = place(key); slots[i].used; i = (i + 1) & (slots.size() - 1))
+      if (slots[i].key.point == key.point && slots[i].key.facet == key.facet)
+        return slots[i].impulse;
+  return {};
+}
+
+template <int dim>
+void
+WarmStart<dim>::store(const std::vector<Key>                    &keys,
+                      const std::vector<dealii::Tensor<1, dim>> &impulses)
+{
+  std::size_t size = std::max<std::size_t>(slots.size(), 16);
+  while (size < 3 * keys.size())
+    size *= 2;
+  slots.resize(size);
+  for (auto &slot : slots)
+    slot.used = false;
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (impulses[k].norm_square() > 0)
+      {
+        std::size_t i = place(keys[k]);
+        while (slots[i].used)
+          i = (i + 1) & (slots.size() - 1);
+        slots[i] = {keys[k], impulses[k], true};
+      }
+}
+
+template class WarmStart<2>;
+template class WarmStart<3>;
+} // namespace coracle::contact

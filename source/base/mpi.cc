@@ -107,11 +107,10 @@ int
 finish(const std::string &message, const int exit_code, const MPI_Comm comm)
 {
   const bool agreed = all_arrive(comm);
-  if (!agreed || rank(comm) == 0)
-    std::cerr << (agreed || n_ranks(comm) == 1
-                    ? ""
-                    : "on rank " + std::to_string(rank(comm)) + " alone: ")
-              << message << std::endl;
+  if (!agreed)
+    std::cerr << message << "\n  rank      " << rank(comm) << ", while others went on" << std::endl;
+  else if (rank(comm) == 0)
+    std::cerr << message << std::endl;
   if (!agreed)
     MPI_Abort(comm, exit_code);
   return exit_code;

@@ -3,6 +3,18 @@
 # (-DCORACLE_PRECOMPILED_HEADERS=OFF builds without it).
 option(CORACLE_PRECOMPILED_HEADERS "Precompile deal.II's headers" ON)
 
+# ccache when present. It must be told that precompiled headers are all right, and the compiler to
+# leave a mark of them in what it preprocesses; otherwise nothing would be found in the cache.
+find_program(CORACLE_CCACHE ccache)
+if(CORACLE_CCACHE AND (NOT CMAKE_CXX_COMPILER_LAUNCHER OR CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$"))
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+    ${CORACLE_CCACHE})
+endif()
+if(CORACLE_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(coracle_options INTERFACE -fpch-preprocess)
+endif()
+
 if(CORACLE_PRECOMPILED_HEADERS)
   file(WRITE ${CMAKE_BINARY_DIR}/precompiled.cc.new "// Compiled only for its precompiled header.\n")
   configure_file(${CMAKE_BINARY_DIR}/precompiled.cc.new ${CMAKE_BINARY_DIR}/precompiled.cc COPYONLY)

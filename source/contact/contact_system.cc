@@ -174,6 +174,11 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
   for (unsigned int s = 0; s < points.size(); ++s)
     local_search.find(points[s], s, search.candidates(s), motion, list);
 
+  std::vector<const Candidates *> candidate_lists;
+  for (unsigned int s = 0; s < points.size(); ++s)
+    candidate_lists.push_back(&search.candidates(s));
+  auditor.start(surface(), points, candidate_lists);
+
   statistics.worst_gap = std::numeric_limits<double>::max();
   for (const auto &contact : list)
     {
@@ -249,6 +254,17 @@ ContactSystem<dim>::surface_impulses(std::vector<Vector> &impulse,
       }
   facets.add_to_owners(nodal_impulse, impulse);
   facets.add_to_owners(nodal_correction, correction);
+}
+
+template <int dim>
+unsigned long
+ContactSystem<dim>::audit(const Surface<dim> &owned, const std::vector<PointSet<dim>> &points)
+{
+  facets.update(owned);
+  unsigned long n = auditor.finish(surface(), points);
+  MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
+  statistics.n_penetrations += n;
+  return n;
 }
 
 template class ContactSystem<2>;

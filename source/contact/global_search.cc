@@ -113,7 +113,8 @@ GlobalSearch<dim>::search_group(const PointSet<dim> &points,
 {
   Box group = empty_box(dim);
   for (unsigned int i = begin; i < end; ++i)
-    extend(group, points, i);
+    if (!points.is_hole(i))
+      extend(group, points, i);
   if (!overlap(group, all))
     return;
   tree.find(group, found);
@@ -122,6 +123,8 @@ GlobalSearch<dim>::search_group(const PointSet<dim> &points,
   std::sort(found.begin(), found.end());
   for (unsigned int i = begin; i < end; ++i)
     {
+      if (points.is_hole(i))
+        continue;
       Box point = empty_box(dim);
       extend(point, points, i);
       for (const unsigned int f : found)

@@ -59,8 +59,10 @@ LocalSearch<dim>::collect_pairs(const PointSet<dim> &points,
   for (std::size_t i = 0; i < candidates.point.size(); ++i)
     {
       const unsigned int p = candidates.point[i];
-      const auto         x = points.point(p);
-      const double       r = points.radius(p) + travel;
+      if (points.is_hole(p))
+        continue;
+      const auto   x = points.point(p);
+      const double r = points.radius(p) + travel;
       for (std::size_t k = candidates.begin[i]; k < candidates.begin[i + 1]; ++k)
         {
           const unsigned int f = candidates.facet[k];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/contact/audit.h>
 #include <coracle/contact/facet_exchange.h>
 #include <coracle/contact/local_search.h>
 #include <coracle/contact/row_builder.h>
@@ -15,6 +16,8 @@ struct ContactReport
   /// Smallest g - R of all contacts [m]; 0 if there are none.
   double       worst_gap = 0;
   SolverReport solver;
+  /// Points that went through a surface since the start, found by the audit.
+  unsigned long n_penetrations = 0;
   /// How often candidates were looked for anew, and how many pairs of point and facet this rank
   /// keeps.
   unsigned int  n_rebuilds   = 0;
@@ -107,6 +110,17 @@ public:
   /// Per rigid body, the same on all ranks.
   const std::vector<RigidImpulse> &rigid_impulses() const { return rigid_sums; }
 
+  /**
+   * Collective. After all has moved, and before points are renumbered: counts
+   * points whose path went through a facet, see Audit.
+   * @param owned as for find(), nodes at the end of the step
+   * @return crossings of this step on all ranks
+   */
+  unsigned long audit(const Surface<dim> &owned, const std::vector<PointSet<dim>> &points);
+
+  /// The first crossings of this rank's points, for messages.
+  const std::vector<Crossing<dim>> &first_crossings() const { return auditor.first_crossings(); }
+
   const ContactReport &report() const { return statistics; }
 
 private:
@@ -129,6 +143,7 @@ private:
   LocalSearch<dim>   local_search;
   RowBuilder<dim>    rows;
   Solver<dim>        solver;
+  Audit<dim>         auditor;
 
   bool changed = true;
   /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].

@@ -31,6 +31,9 @@ struct PointSet
   /// A bound of all points' speeds if the caller has one [m/s]; negative: contact looks for itself.
   double maximum_speed = -1;
 
+  /// Where a mass is 0, the row is a hole in the columns and no point; null: all are points.
+  const double *mass = nullptr;
+
   /// Radius r per point [m]; where the column is null, the constant holds.
   const double *radius_column   = nullptr;
   double        constant_radius = 0;
@@ -52,6 +55,8 @@ struct PointSet
    * the point; contact reads and writes it.
    */
   std::vector<double *> side;
+
+  bool is_hole(const unsigned int i) const { return mass != nullptr && mass[i] == 0; }
 
   dealii::Point<dim> point(const unsigned int i) const
   {

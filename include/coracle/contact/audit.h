@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/global_search.h>
+
+namespace coracle::contact
+{
+struct PathEvent;
+
+/// A point that went through a facet.
+template <int dim>
+struct Crossing
+{
+  std::uint64_t id;
+  /// Where it went through [m], and when within the step [1].
+  dealii::Point<dim> place;
+  double             time;
+  unsigned int       body;
+  std::uint64_t      facet_key;
+};
+
+/**
+ * Independent check that no point passes through a surface: the straight path of
+ * each candidate point from the start to the end of a step against the facets,
+ * whose nodes move on straight paths likewise. Shares no code with the local
+ * search or the solver; bilinear facets are taken as four triangles around their
+ * middle.
+ *
+ * Where the path meets a facet's moving plane is a root of a quadratic (2-D) or
+ * cubic (3-D) in time. A closed body is crossed from outside only, a sheet both
+ * ways. The surface is thought moved by 1e-9 of the facet's size to the side
+ * that the point does not belong to: a point that starts exactly on the surface
+ * and goes in is counted, one that ends on it is not until it goes on. Facets
+ * that meet at the edge or vertex where a path goes through report it at the same
+ * time and count once; opposite ways cancel (the path only touches).
+ */
+template <int dim>
+class Audit
+{
+public:
+  /// At the start of the step: keeps what it needs of positions. Facets and candidates must be the
+  /// same at finish().
+  void start(const Surface<dim>                    &surface,
+             const std::vector<PointSet<dim>>      &points,
+             const std::vector<const Candidates *> &candidates);
+
+  /// At the end of the step, before points are renumbered or their sides forgotten.
+  /// @return number of crossings of this rank's points in this step
+  unsigned int finish(const Surface<dim> &surface, const std::vector<PointSet<dim>> &points);
+
+  /// All crossings since the start of the run on this rank, and the first few of them.
+  unsigned long                     n_crossings() const { return total; }
+  const std::vector<Crossing<dim>> &first_crossings() const { return first; }
+
+  static constexpr unsigned int n_kept = 5;
+
+private:
+  /// Facets of one point among the candidates.
+  struct CandidateRange
+  {
+    const unsigned int *facet;
+    std::size_t         begin, end;
+  };
+  void meet_body(const Surface<dim>                      &surface,
+                 const unsigned int                       body,
+                 const std::array<dealii::Point<dim>, 2> &p,
+                 const int                                side,
+                 const CandidateRange                    &range,
+                 std::vector<PathEvent>                  &events) const;
+  /// -1, +1, or 0 where the point may belong to either.
+  static int
+  side_of(const SurfaceBody &body, const PointSet<dim> &points, const unsigned int point);
+
+  std::vector<dealii::Point<dim>>              nodes;
+  std::vector<std::vector<dealii::Point<dim>>> starts;
+  std::vector<const Candidates *>              candidates;
+  std::vector<Crossing<dim>>                   first;
+  unsigned long                                total = 0;
+};
+
+/// One meeting of a path with a facet.
+struct PathEvent
+{
+  double time;
+  /// +1: from the side of the normal to the other; -1: the other way.
+  int          direction;
+  unsigned int facet;
+};
+
+/**
+ * Meetings of a point that moves straight from p[0] to p[1] with a simplex
+ * (segment, triangle) whose vertices move straight from x[0] to x[1].
+ * @param shift the simplex is thought moved along its normal by this part of its size
+ * Appends to `events`.
+ */
+template <int dim>
+void meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
+                  const std::array<std::array<dealii::Point<dim>, dim>, 2> &x,
+                  const double                                              shift,
+                  const unsigned int                                        facet,
+                  std::vector<PathEvent>                                   &events);
+} // namespace coracle::contact

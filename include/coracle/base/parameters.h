@@ -61,7 +61,8 @@ public:
   /// A file that must exist; a relative path is relative to the parameter file's folder.
   void file(const std::string &name, const std::string &meaning);
 
-  /// Expressions in x, y, z, t (as FunctionParser reads them), separated by ';'. Results in SI `unit`.
+  /// Expressions in x, y, z, t (as FunctionParser reads them), separated by ';'. Results in SI
+  /// `unit`.
   void function(const std::string &name,
                 const std::string &default_value,
                 const std::string &unit,
@@ -72,11 +73,11 @@ public:
 
   /// A subsection that holds any number of subsections with names of the user's, all alike.
   /// `item` is the word for one of them in the documentation ("body").
-  Declaration &named_sections(const std::string &name,
-                              const std::string &item,
-                              const std::string &meaning);
+  Declaration &
+  named_sections(const std::string &name, const std::string &item, const std::string &meaning);
 
-  /// Entries that are allowed only where the choice `key` (declared before in this section) is `option`.
+  /// Entries that are allowed only where the choice `key` (declared before in this section) is
+  /// `option`.
   Declaration &when(const std::string &key, const std::string &option);
 
 private:
@@ -120,7 +121,8 @@ public:
   /// "Bodies/water"
   std::string path() const;
 
-  /// A UserError that names file, line and entry ("" for the whole section); for `throw section.error(...)`.
+  /// A UserError that names file, line and entry ("" for the whole section); for `throw
+  /// section.error(...)`.
   UserError error(const std::string &entry,
                   const std::string &title,
                   const std::string &found,

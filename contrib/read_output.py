@@ -85,7 +85,7 @@ class XdmfSeries:
         if len(points) != int(grid.find("Topology").get("NumberOfElements")):
             raise ValueError("numbers of points and of cells differ")
         data = {a.get("Name"): self.load(a.find("DataItem")) for a in grid.findall("Attribute")}
-        cells = np.arange(len(points)).reshape(-1, 1)
+        cells = self.load(grid.find("Topology/DataItem"))
         return Frame(self.times[index], points, data, {}, cells)
 
 

@@ -5,11 +5,15 @@
 #include <coracle/io/particle_output.h>
 #include <coracle/io/text.h>
 
+#include <numeric>
+
 namespace coracle
 {
 namespace
 {
-/// One moment of the XDMF collection. Polyvertex needs no connectivity: point i is cell i.
+/// One moment of the XDMF collection. The format has a default for the cells of a polyvertex (point
+/// i is cell i), but with it ParaView makes points without cells, which it does not draw: hence
+/// `cells`.
 std::string
 xdmf_grid(const double              time,
           const std::string        &file,
@@ -24,12 +28,15 @@ xdmf_grid(const double              time,
            "\" Format=\"HDF\">" + xml_text(file + ":/" + field.name) + "</DataItem>";
   };
 
+  const std::string cells = "<DataItem Dimensions=\"" + std::to_string(n) +
+                            " 1\" NumberType=\"UInt\" Precision=\"4\" Format=\"HDF\">" +
+                            xml_text(file + ":/cells") + "</DataItem>";
   std::string grid =
     "<Grid Name=\"particles\" GridType=\"Uniform\">\n<Time Value=\"" + exact_number(time) +
     "\"/>\n<Topology TopologyType=\"Polyvertex\" "
     "NumberOfElements=\"" +
-    std::to_string(n) + "\" NodesPerElement=\"1\"/>\n<Geometry GeometryType=\"XYZ\">" +
-    item(fields[0]) + "</Geometry>\n";
+    std::to_string(n) + "\" NodesPerElement=\"1\">" + cells +
+    "</Topology>\n<Geometry GeometryType=\"XYZ\">" + item(fields[0]) + "</Geometry>\n";
   for (unsigned int f = 1; f < fields.size(); ++f)
     grid += "<Attribute Name=\"" + xml_text(fields[f].name) + "\" AttributeType=\"" +
             (n_written_components(fields[f]) == 1 ? "Scalar" : "Vector") + "\" Center=\"Node\">" +
@@ -84,6 +91,9 @@ ParticleOutput::write_hdf5(const double              time,
 
   Hdf5File file(folder + "/" + file_name, comm);
   file.set_attribute("", "time", time);
+  std::vector<unsigned int> cells(n_particles);
+  std::iota(cells.begin(), cells.end(), static_cast<unsigned int>(rows.first));
+  file.write_rows("cells", H5T_NATIVE_UINT, cells.data(), rows);
   for (const Field &field : fields)
     {
       rows.n_components = n_written_components(field);

@@ -150,7 +150,7 @@ void
 BodyPointProbe<dim>::set_columns(const NodeView &nodes, Statistics &statistics) const
 {
   // Only the owner's share is not zero, so that the sum is its values exactly.
-  std::array<double, 3 * dim> local{}, values{};
+  std::array<double, 3 * dim> local{}, values;
   if (local_node >= 0)
     {
       const auto reference = entry<dim>(nodes.reference, local_node);
@@ -163,7 +163,9 @@ BodyPointProbe<dim>::set_columns(const NodeView &nodes, Statistics &statistics) 
           local[2 * dim + d] = velocity[d];
         }
     }
-  dealii::Utilities::MPI::sum(local, comm, values);
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(local),
+                              comm,
+                              dealii::ArrayView<double>(values));
   statistics.set_vector(prefix + ".position", &values[0], dim);
   statistics.set_vector(prefix + ".displacement", &values[dim], dim);
   statistics.set_vector(prefix + ".velocity", &values[2 * dim], dim);
@@ -188,7 +190,7 @@ void
 PointProbe<dim>::set_columns(const ParticleView &particles, Statistics &statistics) const
 {
   // Number, mass, mass times pressure, momentum.
-  std::array<double, 3 + dim> local{}, sums{};
+  std::array<double, 3 + dim> local{}, sums;
   for (std::size_t i = 0; i < particles.n_particles; ++i)
     if (description.position.distance(entry<dim>(particles.position, i)) <= description.radius)
       {
@@ -200,7 +202,9 @@ PointProbe<dim>::set_columns(const ParticleView &particles, Statistics &statisti
         for (unsigned int d = 0; d < dim; ++d)
           local[3 + d] += mass * velocity[d];
       }
-  dealii::Utilities::MPI::sum(local, comm, sums);
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(local),
+                              comm,
+                              dealii::ArrayView<double>(sums));
 
   const std::string prefix = description.prefix();
   const double      mass   = sums[1];

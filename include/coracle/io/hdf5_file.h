@@ -28,7 +28,7 @@ public:
   ~Hdf5File();
   Hdf5File(const Hdf5File &) = delete;
 
-  /// A two-dimensional dataset of rows; `type` is H5T_NATIVE_FLOAT or H5T_NATIVE_DOUBLE.
+  /// A two-dimensional dataset of rows; `type` is a native type of HDF5.
   void write_rows(const std::string  &dataset,
                   const hid_t         type,
                   const void         *values,

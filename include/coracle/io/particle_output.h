@@ -24,8 +24,8 @@ struct ParticleFormat
  * The particles of one body over time.
  *
  * HDF5: data/NAME.NNNNNN.h5 holds one dataset per field, N x 1 or N x 3, with
- * attributes `time` [s] (file) and `unit` (dataset), written by all ranks
- * together through MPI-IO; NAME.xdmf lists them all (one temporal collection of
+ * attributes `time` [s] (file) and `unit` (dataset), and `cells` (the numbers 0..N-1), written by
+ * all ranks together through MPI-IO; NAME.xdmf lists them all (one temporal collection of
  * polyvertex grids) and is rewritten each time, so that it opens in ParaView
  * while the run goes on. VTU: see VtuSeries.
  *

@@ -88,7 +88,7 @@ struct Report
   std::uint64_t particles_created = 0, particles_removed = 0, particles_converted = 0;
   /// Particle-steps done so far, for the rate shown.
   double                       particle_steps = 0;
-  EnergyBooks                     energies;
+  EnergyBooks                  energies;
   double                       energy_balance_error = 0;
   dealii::Tensor<1, dim>       momentum; ///< of everything [kg m/s]
   std::vector<BodyReport<dim>> bodies;

@@ -12,10 +12,10 @@ using Targets = std::vector<std::pair<unsigned int, unsigned int>>;
 
 /// Send to and receive from the ranks of two lists, `n` doubles for each node.
 void
-exchange(double        *sent,
-         const Targets &to,
-         double        *received,
-         const Targets &from,
+exchange(double            *sent,
+         const Targets     &to,
+         double            *received,
+         const Targets     &from,
          const unsigned int n,
          const MPI_Comm     comm)
 {

@@ -44,8 +44,10 @@ declare_plate_and_wedge(Declaration &section)
                 1);
 
   Declaration &wedge = section.when("Type", "wedge");
-  wedge.quantity("Breadth", "0.5", "m", "B", "width of the top; the tip points down, at the origin", 0.);
-  wedge.quantity("Deadrise angle", "30 deg", "rad", "beta", "between the sides and the horizontal", 0.);
+  wedge.quantity(
+    "Breadth", "0.5", "m", "B", "width of the top; the tip points down, at the origin", 0.);
+  wedge.quantity(
+    "Deadrise angle", "30 deg", "rad", "beta", "between the sides and the horizontal", 0.);
   wedge.list("Subdivisions",
              "5, 9, 9",
              "1",
@@ -71,9 +73,10 @@ declare_polygon_and_file(Declaration &section)
   polygon.quantity("Length", "1", "m", "", "along z, from 0, 3-D only", 0.);
   polygon.integer("Subdivisions along z", 1, "elements along z, 3-D only", 1);
 
-  section.when("Type", "file").file("File",
-                                    "mesh of quadrilaterals or hexahedra: gmsh (.msh), Abaqus "
-                                    "(.inp) or legacy VTK (.vtk); boundary ids as the file has them");
+  section.when("Type", "file")
+    .file("File",
+          "mesh of quadrilaterals or hexahedra: gmsh (.msh), Abaqus "
+          "(.inp) or legacy VTK (.vtk); boundary ids as the file has them");
 }
 } // namespace
 

@@ -73,9 +73,9 @@ box(const Parameters &section, dealii::Triangulation<dim> &triangulation)
 
 template <int dim>
 void
-extruded_polygon(const Parameters                      &section,
-                 const std::vector<dealii::Point<2>>   &corners,
-                 dealii::Triangulation<dim>            &triangulation)
+extruded_polygon(const Parameters                    &section,
+                 const std::vector<dealii::Point<2>> &corners,
+                 dealii::Triangulation<dim>          &triangulation)
 {
   dealii::Triangulation<2> plane;
   try
@@ -84,7 +84,10 @@ extruded_polygon(const Parameters                      &section,
     }
   catch (const std::invalid_argument &reason)
     {
-      throw section.error("Subdivisions", "polygon that cannot be meshed", reason.what(), "change the polygon");
+      throw section.error("Subdivisions",
+                          "polygon that cannot be meshed",
+                          reason.what(),
+                          "change the polygon");
     }
   if constexpr (dim == 2)
     triangulation.copy_triangulation(plane);
@@ -170,8 +173,8 @@ template <int dim>
 void
 read_file(const Parameters &section, dealii::Triangulation<dim> &triangulation)
 {
-  const std::string file = section.file("File"), end = file.substr(file.find_last_of('.') + 1);
-  std::ifstream     stream(file);
+  const std::string   file = section.file("File"), end = file.substr(file.find_last_of('.') + 1);
+  std::ifstream       stream(file);
   dealii::GridIn<dim> reader(triangulation);
   try
     {

@@ -78,7 +78,7 @@ star(const std::vector<Point2> &corners, const unsigned int n)
 bool
 is_convex(const Patch &patch)
 {
-  const auto &c = patch.corners;
+  const auto  &c         = patch.corners;
   const double tolerance = 1e-10 * c[0].distance_square(c[3]);
   return doubled_area(c[0], c[1], c[2]) > tolerance && doubled_area(c[1], c[3], c[0]) > tolerance &&
          doubled_area(c[3], c[2], c[1]) > tolerance && doubled_area(c[2], c[0], c[3]) > tolerance;
@@ -91,8 +91,8 @@ triangles(std::vector<Point2> corners)
   std::vector<std::array<Point2, 3>> result;
   while (corners.size() > 3)
     {
-      const std::size_t m = corners.size();
-      std::size_t       best = m;
+      const std::size_t m            = corners.size();
+      std::size_t       best         = m;
       double            best_quality = 1e-12;
       for (std::size_t i = 0; i < m; ++i)
         {
@@ -101,7 +101,7 @@ triangles(std::vector<Point2> corners)
             return p != a && p != b && p != c && doubled_area(a, b, p) >= 0 &&
                    doubled_area(b, c, p) >= 0 && doubled_area(c, a, p) >= 0;
           });
-          const double quality =
+          const double  quality =
             doubled_area(a, b, c) /
             (a.distance_square(b) + b.distance_square(c) + c.distance_square(a));
           if (!blocked && quality > best_quality)
@@ -144,18 +144,15 @@ patches_of(const std::vector<Point2> &corners, const std::vector<unsigned int> &
 
 /// Elements of a patch with vertices of their own; equal ones are merged afterwards.
 void
-append(const Patch                        &patch,
-       std::vector<Point2>                &vertices,
-       std::vector<dealii::CellData<2>>   &cells)
+append(const Patch &patch, std::vector<Point2> &vertices, std::vector<dealii::CellData<2>> &cells)
 {
   const unsigned int first = vertices.size(), row = patch.n[0] + 1;
   for (unsigned int j = 0; j <= patch.n[1]; ++j)
     for (unsigned int i = 0; i <= patch.n[0]; ++i)
       {
         const double x = double(i) / patch.n[0], y = double(j) / patch.n[1];
-        vertices.emplace_back(
-          (1 - y) * ((1 - x) * patch.corners[0] + x * patch.corners[1]) +
-          y * ((1 - x) * patch.corners[2] + x * patch.corners[3]));
+        vertices.emplace_back((1 - y) * ((1 - x) * patch.corners[0] + x * patch.corners[1]) +
+                              y * ((1 - x) * patch.corners[2] + x * patch.corners[3]));
       }
   for (unsigned int j = 0; j < patch.n[1]; ++j)
     for (unsigned int i = 0; i < patch.n[0]; ++i)
@@ -175,7 +172,7 @@ nearest_edge(const std::vector<Point2> &corners, const Point2 &p)
   double       best_distance = std::numeric_limits<double>::max();
   for (unsigned int i = 0; i < corners.size(); ++i)
     {
-      const Point2 &a = corners[i];
+      const Point2 &a    = corners[i];
       const auto    edge = corners[(i + 1) % corners.size()] - a;
       const double  s    = std::clamp((p - a) * edge / edge.norm_square(), 0., 1.);
       const double  d    = (p - a - s * edge).norm();

@@ -34,8 +34,8 @@ std::uint64_t
 facet_key(const Cell &cell, const unsigned int face)
 {
   constexpr unsigned int path_bits = 3 * 11 + 1, face_bits = 3;
-  const dealii::CellId   id        = cell->id();
-  std::uint64_t          path      = 1;
+  const dealii::CellId   id   = cell->id();
+  std::uint64_t          path = 1;
   for (const auto child : id.get_child_indices())
     path = 8 * path + static_cast<unsigned int>(child);
   return (((id.get_coarse_cell_id() << path_bits) + path) << face_bits) + face;
@@ -45,9 +45,7 @@ facet_key(const Cell &cell, const unsigned int face)
 
 template <int dim>
 StructureMesh<dim>::StructureMesh(const Parameters &section, MPI_Comm comm)
-  : triangulation(comm)
-  , fe(1)
-  , dof_handler(triangulation)
+  : triangulation(comm), fe(1), dof_handler(triangulation)
 {
   dealii::Triangulation<dim> coarse;
   generate_mesh(section, coarse);
@@ -65,9 +63,7 @@ template <int dim>
 StructureMesh<dim>::StructureMesh(const dealii::Triangulation<dim> &coarse,
                                   MPI_Comm                          comm,
                                   const unsigned int                n_refinements)
-  : triangulation(comm)
-  , fe(1)
-  , dof_handler(triangulation)
+  : triangulation(comm), fe(1), dof_handler(triangulation)
 {
   triangulation.copy_triangulation(coarse);
   triangulation.refine_global(n_refinements);
@@ -127,7 +123,7 @@ StructureMesh<dim>::number_nodes()
   dealii::IndexSet ghosts = with_parents;
   ghosts.subtract_set(owned);
 
-  exchange = ColumnExchange(owned, ghosts, triangulation.get_communicator());
+  exchange            = ColumnExchange(owned, ghosts, triangulation.get_communicator());
   const auto &indices = *exchange.indices();
   hanging_nodes.clear();
   for (const auto node : needed)
@@ -170,7 +166,10 @@ StructureMesh<dim>::number_elements()
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             {
-              BoundaryFacet<dim> facet{{}, n_elements() - 1, cell->face(f)->boundary_id(), facet_key(cell, f)};
+              BoundaryFacet<dim> facet{{},
+                                       n_elements() - 1,
+                                       cell->face(f)->boundary_id(),
+                                       facet_key(cell, f)};
               for (unsigned int v = 0; v < facet.n_nodes; ++v)
                 facet.nodes[v] = element[faces[f][v]];
               facets.push_back(facet);

@@ -4,6 +4,9 @@
 #include <coracle/structure/node_columns.h>
 #include <coracle/structure/selection.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace coracle
 {
 namespace
@@ -23,17 +26,19 @@ normal_axis(const Parameters                &section,
       for (const unsigned int n : mesh.facets[f].nodes)
         for (int d = 0; d < dim; ++d)
           extent[d] =
-            std::max(extent[d], std::fabs(mesh.nodes[n][d] - mesh.nodes[mesh.facets[f].nodes[0]][d]));
+            std::max(extent[d],
+                     std::fabs(mesh.nodes[n][d] - mesh.nodes[mesh.facets[f].nodes[0]][d]));
       for (int d = 0; d < dim; ++d)
         flatness[d] = std::max(flatness[d], extent[d] / extent.norm());
     }
   for (unsigned int d = 0; d < dim; ++d)
     if (mpi::max(flatness[d], mesh.communicator()) < 1e-6)
       return d;
-  throw section.error("Type",
-                      "symmetry on a surface that is not a plane across an axis",
-                      "faces with other normals",
-                      "select faces with one normal along x, y or z, or use `fixed` with Directions");
+  throw section.error(
+    "Type",
+    "symmetry on a surface that is not a plane across an axis",
+    "faces with other normals",
+    "select faces with one normal along x, y or z, or use `fixed` with Directions");
 }
 } // namespace
 
@@ -62,32 +67,50 @@ BoundaryConditions<dim>::declare(Declaration &body_section)
 }
 
 template <int dim>
-BoundaryConditions<dim>::BoundaryConditions(const Parameters         &body,
-                                            const StructureMesh<dim> &mesh)
+BoundaryConditions<dim>::BoundaryConditions(const Parameters &body, const StructureMesh<dim> &mesh)
 {
   const Parameters section = body.section("Boundary conditions");
   for (const std::string &name : section.section_names())
-    conditions.push_back(read(section.section(name), mesh));
+    {
+      Condition added = read(section.section(name), mesh);
+      for (Condition &earlier : conditions)
+        for (int d = 0; d < dim; ++d)
+          {
+            std::vector<unsigned int> kept;
+            std::set_difference(earlier.nodes[d].begin(),
+                                earlier.nodes[d].end(),
+                                added.nodes[d].begin(),
+                                added.nodes[d].end(),
+                                std::back_inserter(kept));
+            earlier.nodes[d] = kept;
+          }
+      conditions.push_back(std::move(added));
+    }
 }
 
 template <int dim>
 typename BoundaryConditions<dim>::Condition
 BoundaryConditions<dim>::read(const Parameters &section, const StructureMesh<dim> &mesh) const
 {
-  const Selection<dim> selection(section, false);
-  const std::string    type = section.choice("Type");
-  Condition            condition;
-  condition.nodes = selection.nodes(mesh);
+  const Selection<dim>  selection(section, false);
+  const std::string     type = section.choice("Type");
+  Condition             condition;
+  std::array<bool, dim> prescribed{};
   if (type == "symmetric")
+    prescribed[normal_axis(section, selection.facets(mesh), mesh)] = true;
+  else
     {
-      condition.directions[normal_axis(section, selection.facets(mesh), mesh)] = true;
-      return condition;
+      const std::vector<std::string> axes = {"x", "y", "z"};
+      const auto words = read_words(section, "Directions", {axes.begin(), axes.begin() + dim});
+      for (int d = 0; d < dim; ++d)
+        prescribed[d] = words.empty() || words.count(axes[d]) > 0;
     }
+  for (const unsigned int n : selection.nodes(mesh))
+    if (n < mesh.n_owned_nodes())
+      for (int d = 0; d < dim; ++d)
+        if (prescribed[d])
+          condition.nodes[d].push_back(n);
 
-  const std::vector<std::string> axes = {"x", "y", "z"};
-  const auto words = read_words(section, "Directions", {axes.begin(), axes.begin() + dim});
-  for (int d = 0; d < dim; ++d)
-    condition.directions[d] = words.empty() || words.count(axes[d]) > 0;
   condition.is_displacement = (type == "displacement");
   if (type == "velocity")
     condition.function = section.template function<dim>("Velocity", dim);
@@ -102,39 +125,54 @@ BoundaryConditions<dim>::constrain(Columns &nodes) const
 {
   for (const Condition &condition : conditions)
     for (int d = 0; d < dim; ++d)
-      if (condition.directions[d])
-        for (const unsigned int n : condition.nodes)
-          nodes[NodeColumns<dim>::inverse_mass + d][n] = 0;
+      for (const unsigned int n : condition.nodes[d])
+        nodes[NodeColumns<dim>::inverse_mass + d][n] = 0;
 }
 
 template <int dim>
-void
+double
+BoundaryConditions<dim>::velocity(const Condition   &condition,
+                                  Columns           &nodes,
+                                  const unsigned int n,
+                                  const int          d,
+                                  const double       dt) const
+{
+  if (!condition.function)
+    return 0;
+  dealii::Point<dim> reference;
+  for (int i = 0; i < dim; ++i)
+    reference[i] = nodes[NodeColumns<dim>::reference + i][n];
+  const double value = condition.function->value(reference, d);
+  if (!condition.is_displacement)
+    return value;
+  return (value - (nodes[NodeColumns<dim>::position + d][n] - reference[d])) / dt;
+}
+
+template <int dim>
+typename BoundaryConditions<dim>::Work
 BoundaryConditions<dim>::prescribe_velocities(Columns     &nodes,
                                               const double time,
-                                              const double dt) const
+                                              const double dt,
+                                              const double duration) const
 {
-  using Columns_ = NodeColumns<dim>;
+  using Node = NodeColumns<dim>;
+  Work work;
   for (const Condition &condition : conditions)
     {
       if (condition.function)
         condition.function->set_time(condition.is_displacement ? time + dt : time + dt / 2);
-      for (const unsigned int n : condition.nodes)
-        {
-          dealii::Point<dim> reference;
-          for (int d = 0; d < dim; ++d)
-            reference[d] = nodes[Columns_::reference + d][n];
-          for (int d = 0; d < dim; ++d)
-            if (condition.directions[d])
-              {
-                const double value =
-                  condition.function ? condition.function->value(reference, d) : 0.;
-                nodes[Columns_::velocity + d][n] =
-                  condition.is_displacement ?
-                    (value - (nodes[Columns_::position + d][n] - reference[d])) / dt :
-                    value;
-              }
-        }
+      for (int d = 0; d < dim; ++d)
+        for (const unsigned int n : condition.nodes[d])
+          {
+            double      &v     = nodes[Node::velocity + d][n];
+            const double after = velocity(condition, nodes, n, d, dt), mean = 0.5 * (v + after),
+                         internal = duration * nodes[Node::internal + d][n] * mean;
+            work.strain -= internal;
+            work.external += nodes[Node::mass][n] * (after - v) * mean - internal;
+            v = after;
+          }
     }
+  return work;
 }
 
 template class BoundaryConditions<2>;

@@ -3,6 +3,7 @@
 #include <coracle/structure/elements.h>
 #include <coracle/structure/update_elements.h>
 
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -34,6 +35,22 @@ shape_value(const int n, const int q)
   return value;
 }
 
+/// Is the volume at any Gauss point not positive?
+template <int dim>
+bool
+is_turned_out(NodalVectors<dim, double> x)
+{
+  for (auto &component : x)
+    {
+      to_modes<dim>(component);
+      scale_for_gauss_points<dim>(component);
+    }
+  for (int q = 0; q < nodes_per_element<dim>; ++q)
+    if (!(determinant<dim, double>(point_gradient<dim, double>(x, q)) > 0))
+      return true;
+  return false;
+}
+
 double
 reference_density(const MaterialVariant &material)
 {
@@ -52,8 +69,7 @@ Elements<dim>::Elements(const StructureMesh<dim> &mesh,
   , stable_step(std::numeric_limits<double>::infinity())
 {
   data.hourglass_coefficient = hourglass_coefficient;
-  data.n_history =
-    std::visit([](const auto &m) -> unsigned int { return m.n_history; }, material);
+  data.n_history  = std::visit([](const auto &m) -> unsigned int { return m.n_history; }, material);
   data.n_elements = n_elements;
   allocate(mesh);
   compute_reference(mesh);
@@ -81,7 +97,8 @@ Elements<dim>::compute_reference(const StructureMesh<dim> &mesh)
   for (unsigned int i = 0; i < data.n_packs * pack_size; ++i)
     {
       NodalVectors<dim, double> b;
-      const double volume = mean_gradient<dim, double>(corners(mesh, std::min(i, n_elements - 1)), b);
+      const double              volume =
+        mean_gradient<dim, double>(corners(mesh, std::min(i, n_elements - 1)), b);
       data.columns[Data::volume][i] = volume;
       data.columns[Data::mass][i]   = density * volume;
     }
@@ -128,30 +145,40 @@ Elements<dim>::update(Columns &nodes, const double dt)
   for (int l = 0; l < pack_size; ++l)
     {
       rate = std::max(rate, limits.rate[l]);
-      if (limits.failed_pack < data.n_packs && limits.failed[l] != 0)
-        report_failure(nodes, std::min(limits.failed_pack * pack_size + l, n_elements - 1));
+      if (limits.is_good[l] == 0)
+        report_failure(nodes);
     }
   stable_step = (rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity());
 }
 
 template <int dim>
 void
-Elements<dim>::report_failure(const Columns &nodes, const unsigned int element) const
+Elements<dim>::report_failure(const Columns &nodes) const
 {
-  std::ostringstream place;
-  const auto         node = [&](const int n) {
-    return data.connectivity[(element / pack_size * n_nodes + n) * pack_size + element % pack_size];
-  };
-  for (int d = 0; d < dim; ++d)
+  for (unsigned int e = 0; e < n_elements; ++e)
     {
-      double centre = 0;
+      NodalVectors<dim, double> x;
+      dealii::Point<dim>        centre;
       for (int n = 0; n < n_nodes; ++n)
-        centre += nodes[NodeColumns<dim>::position + d][node(n)] / n_nodes;
-      place << (d == 0 ? "(" : ", ") << centre;
+        for (int d = 0; d < dim; ++d)
+          {
+            x[d][n] = nodes[NodeColumns<dim>::position + d][data.node(e, n)];
+            centre[d] += x[d][n] / n_nodes;
+          }
+      if (is_turned_out<dim>(x) || !std::isfinite(stress(e).trace()))
+        {
+          std::ostringstream what;
+          what << "element " << e << " of " << n_elements << " on this rank, at (" << centre
+               << ") m";
+          throw RunFailure(
+            is_turned_out<dim>(x) ? "element turned inside out" : "stress that is not a number",
+            what.str(),
+            "use smaller time steps, smaller or better shaped elements, or a stiffer material");
+        }
     }
-  throw RunFailure("element turned inside out, or its stress is not a number",
-                   "element " + std::to_string(element) + " of this rank at " + place.str() + ") m",
-                   "use smaller time steps, smaller or better shaped elements, or full integration");
+  throw RunFailure("element that cannot be computed",
+                   "one of the elements on this rank",
+                   "use smaller time steps");
 }
 
 template <int dim>

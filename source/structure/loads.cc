@@ -18,10 +18,11 @@ Loads<dim>::declare(Declaration &body_section)
                  "on the unloaded area; acceleration acts on all mass");
   Declaration &pressure = section.when("Type", "pressure");
   Selection<dim>::declare(pressure);
-  pressure.function("Pressure",
-                    "0",
-                    "Pa",
-                    "positive into the body, in x, y, z, t of the middle of a facet where it is now");
+  pressure.function(
+    "Pressure",
+    "0",
+    "Pa",
+    "positive into the body, in x, y, z, t of the middle of a facet where it is now");
   Declaration &traction = section.when("Type", "traction");
   Selection<dim>::declare(traction);
   traction.function("Traction",
@@ -54,8 +55,8 @@ Loads<dim>::read(const Parameters &section, const StructureMesh<dim> &mesh) cons
       return load;
     }
   load.kind     = (type == "pressure" ? Kind::pressure : Kind::traction);
-  load.function = (type == "pressure" ? section.template function<dim>("Pressure", 1) :
-                                        section.template function<dim>("Traction", dim));
+  load.function = (type == "pressure" ? section.template function<dim>("Pressure", 1)
+                                      : section.template function<dim>("Traction", dim));
   for (const unsigned int f : Selection<dim>(section, true).facets(mesh))
     load.facets.push_back(mesh.facets[f].nodes);
   return load;
@@ -79,9 +80,8 @@ template <int dim>
 void
 Loads<dim>::add_facet_forces(const Load &load, Columns &nodes) const
 {
-  const bool follows = (load.kind == Kind::pressure);
-  const unsigned int from =
-    follows ? NodeColumns<dim>::position : NodeColumns<dim>::reference;
+  const bool         follows = (load.kind == Kind::pressure);
+  const unsigned int from    = follows ? NodeColumns<dim>::position : NodeColumns<dim>::reference;
   for (const auto &facet : load.facets)
     {
       FacetCorners<dim>  corners;
@@ -96,8 +96,8 @@ Loads<dim>::add_facet_forces(const Load &load, Columns &nodes) const
       for (std::size_t n = 0; n < facet.size(); ++n)
         for (int d = 0; d < dim; ++d)
           nodes[NodeColumns<dim>::external + d][facet[n]] +=
-            follows ? -load.function->value(middle) * areas[n][d] :
-                      load.function->value(middle, d) * areas[n].norm();
+            follows ? -load.function->value(middle) * areas[n][d]
+                    : load.function->value(middle, d) * areas[n].norm();
     }
 }
 

@@ -23,8 +23,7 @@ in_space(const dealii::Tensor<1, dim> &v)
 
 template <int dim>
 RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, MPI_Comm comm)
-  : StructuralBody<dim>(body, comm)
-  , gravity(gravity)
+  : StructuralBody<dim>(body, comm), gravity(gravity)
 {
   read_mass(body);
   read_motion(body);
@@ -149,16 +148,16 @@ template <int dim>
 void
 RigidBody<dim>::apply_contact_impulses()
 {
-  const Push    all    = total(impulse);
-  const double  before = kinetic_energy();
+  const Push    all             = total(impulse);
+  const double  before          = kinetic_energy();
   const Vector  velocity_before = body_velocity;
   const Vector3 spin_before     = spin();
   for (int d = 0; d < dim; ++d)
     body_velocity[d] += inverse_mass_of_body[d] * all.sum[d];
   rotation.add_angular_impulse(all.moment);
 
-  const double work = 0.5 * (all.sum * (velocity_before + body_velocity) +
-                             all.moment * (spin_before + spin()));
+  const double work =
+    0.5 * (all.sum * (velocity_before + body_velocity) + all.moment * (spin_before + spin()));
   contact_work += work;
   // What does not become kinetic energy went into the supports.
   external_work += kinetic_energy() - before - work;
@@ -212,8 +211,7 @@ RigidBody<dim>::set_node_positions()
 {
   for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
     {
-      const Vector3 arm =
-        rotation.turned(in_space<dim>(this->mesh().nodes[n] - reference_centre));
+      const Vector3 arm = rotation.turned(in_space<dim>(this->mesh().nodes[n] - reference_centre));
       dealii::Point<dim> x = body_centre;
       for (int d = 0; d < dim; ++d)
         x[d] += arm[d];

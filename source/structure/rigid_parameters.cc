@@ -42,8 +42,8 @@ void
 RigidBody<dim>::read_motion(const Parameters &body)
 {
   const std::vector<std::string> directions =
-    dim == 2 ? std::vector<std::string>{"x", "y", "rz"} :
-               std::vector<std::string>{"x", "y", "z", "rx", "ry", "rz"};
+    dim == 2 ? std::vector<std::string>{"x", "y", "rz"}
+             : std::vector<std::string>{"x", "y", "z", "rx", "ry", "rz"};
   std::vector<std::string> allowed = directions;
   allowed.insert(allowed.end(), {"all", "none"});
   auto              words  = read_words(body, "Free directions", allowed);

@@ -15,10 +15,10 @@ using Quaternion = std::array<double, 4>;
 Quaternion
 product(const Quaternion &a, const Quaternion &b)
 {
-  Quaternion r    = {{a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-                      a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-                      a[0] * b[2] + a[2] * b[0] + a[3] * b[1] - a[1] * b[3],
-                      a[0] * b[3] + a[3] * b[0] + a[1] * b[2] - a[2] * b[1]}};
+  Quaternion   r    = {{a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+                        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+                        a[0] * b[2] + a[2] * b[0] + a[3] * b[1] - a[1] * b[3],
+                        a[0] * b[3] + a[3] * b[0] + a[1] * b[2] - a[2] * b[1]}};
   const double norm = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
   for (double &component : r)
     component /= norm;
@@ -53,9 +53,9 @@ matrix(const Quaternion &q)
 }
 } // namespace
 
-RigidRotation::RigidRotation(const dealii::Tensor<2, 3> &inertia, const std::array<bool, 3> &is_free)
-  : body_inertia(inertia)
-  , is_free(is_free)
+RigidRotation::RigidRotation(const dealii::Tensor<2, 3> &inertia,
+                             const std::array<bool, 3>  &is_free)
+  : body_inertia(inertia), is_free(is_free)
 {}
 
 Matrix3

@@ -16,18 +16,17 @@ Selection<dim>::declare(Declaration &section)
                   "number of the part of the boundary, see Mesh/Type; -1 for any",
                   -1,
                   1000000);
-  section.list("Region",
-               "",
-               "m",
-               "",
-               "box in the unloaded configuration: lower corner, upper corner; empty for everywhere");
+  section.list(
+    "Region",
+    "",
+    "m",
+    "",
+    "box in the unloaded configuration: lower corner, upper corner; empty for everywhere");
 }
 
 template <int dim>
 Selection<dim>::Selection(const Parameters &section, const bool everything_allowed)
-  : section(section)
-  , boundary_id(section.integer("Boundary id"))
-  , box(section.list("Region"))
+  : section(section), boundary_id(section.integer("Boundary id")), box(section.list("Region"))
 {
   if (!box.empty() && box.size() != 2 * dim)
     throw section.error("Region",

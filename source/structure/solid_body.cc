@@ -2,6 +2,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/structure/solid_body.h>
 
+#include <type_traits>
 #include <vector>
 
 namespace coracle
@@ -12,11 +13,12 @@ SolidBody<dim>::declare(Declaration &section)
 {
   SolidBody::declare_surface(section);
   section.text("Material", "", "name of a subsection of Materials");
-  section.choice("Integration",
-                 "full",
-                 {"full", "one point"},
-                 "full: 2^dim points with averaged volume change (F-bar), does not lock; one point: "
-                 "several times faster, with hourglass control");
+  section.choice(
+    "Integration",
+    "full",
+    {"full", "one point"},
+    "full: 2^dim points with averaged volume change (F-bar), does not lock; one point: "
+    "several times faster, with hourglass control");
   section.when("Integration", "one point")
     .quantity("Hourglass coefficient",
               "0.05",
@@ -70,6 +72,7 @@ SolidBody<dim>::set_mass()
     for (int d = 0; d < dim; ++d)
       nodes[Node::inverse_mass + d][n] = nodes[Node::mass][n] > 0 ? 1. / nodes[Node::mass][n] : 0.;
   boundary_conditions.constrain(nodes);
+  this->mesh().exchange.update_ghosts(nodes, Node::inverse_mass, dim);
   // What contact feels at a hanging node: its parents, moved together by their weights.
   for (const HangingNode &hanging : this->mesh().hanging_nodes)
     for (int d = 0; d < dim; ++d)
@@ -147,44 +150,41 @@ template <int dim>
 void
 SolidBody<dim>::kick(const double duration, const double dt)
 {
-  Columns           &nodes   = this->node_columns;
-  const unsigned int n_owned = this->mesh().n_owned_nodes();
-  const double       half    = 0.5 * damping_at(time) * duration;
+  Columns            &nodes   = this->node_columns;
+  const unsigned int  n_owned = this->mesh().n_owned_nodes();
+  const double        half    = 0.5 * damping_at(time) * duration;
+  const double *const mass    = nodes[Node::mass];
 
-  // Books need the velocities before; the impulse column is free until contact.
-  for (int d = 0; d < dim; ++d)
-    std::copy_n(nodes[Node::velocity + d], n_owned, nodes[Node::impulse + d]);
   for (int d = 0; d < dim; ++d)
     {
-      double *const v = nodes[Node::velocity + d];
-      for (unsigned int n = 0; n < n_owned; ++n)
-        v[n] = (v[n] * (1. - half) +
-                duration * nodes[Node::inverse_mass + d][n] *
-                  (nodes[Node::internal + d][n] + nodes[Node::external + d][n])) /
-               (1. + half);
+      double *const              v            = nodes[Node::velocity + d];
+      const double *const        f_int        = nodes[Node::internal + d],
+                          *const f_ext        = nodes[Node::external + d],
+                          *const inverse_mass = nodes[Node::inverse_mass + d];
+      // Rows from n on, a pack of them or one; prescribed directions keep their velocity for now.
+      const auto kick_rows = [&](auto *const type, const unsigned int n) {
+        using T        = std::remove_pointer_t<decltype(type)>;
+        const T before = load<T>(v + n), inverse = load<T>(inverse_mass + n),
+                internal = load<T>(f_int + n), external = load<T>(f_ext + n);
+        const T free_velocity =
+          (before * (1. - half) + duration * inverse * (internal + external)) * (1. / (1. + half));
+        const auto is_free = inverse > 0.;
+        const T    after   = select(is_free, free_velocity, before);
+        store(v + n, after);
+        const T mean = select(is_free, T(0.5 * (before + after)), T{});
+        books.strain -= duration * sum(T(internal * mean));
+        books.external_work += duration * sum(T(external * mean));
+        books.damping += 2. * half * sum(T(load<T>(mass + n) * mean * mean));
+      };
+      unsigned int n = 0;
+      for (; n + pack_size <= n_owned; n += pack_size)
+        kick_rows(static_cast<Pack8 *>(nullptr), n);
+      for (; n < n_owned; ++n)
+        kick_rows(static_cast<double *>(nullptr), n);
     }
-  boundary_conditions.prescribe_velocities(nodes, time, dt);
-
-  for (int d = 0; d < dim; ++d)
-    for (unsigned int n = 0; n < n_owned; ++n)
-      {
-        double      &before = nodes[Node::impulse + d][n];
-        const double after = nodes[Node::velocity + d][n], mass = nodes[Node::mass][n],
-                     mean     = 0.5 * (before + after),
-                     internal = duration * nodes[Node::internal + d][n] * mean,
-                     external = duration * nodes[Node::external + d][n] * mean,
-                     gained   = mass * (after - before) * mean;
-        books.strain -= internal;
-        if (nodes[Node::inverse_mass + d][n] > 0)
-          {
-            books.external_work += external;
-            books.damping += 2. * half * mass * mean * mean;
-          }
-        else
-          // A support does whatever work the motion needs.
-          books.external_work += gained - internal;
-        before = 0;
-      }
+  const auto work = boundary_conditions.prescribe_velocities(nodes, time, dt, duration);
+  books.strain += work.strain;
+  books.external_work += work.external;
 }
 
 template <int dim>
@@ -246,8 +246,8 @@ SolidBody<dim>::move(const double dt)
   for (int d = 0; d < dim; ++d)
     {
       const double *const v = nodes[Node::velocity + d];
-      double *const       x = nodes[Node::position + d], *const dx = nodes[Node::increment + d],
-                   *const correction = nodes[Node::correction + d];
+      double *const x = nodes[Node::position + d], *const dx = nodes[Node::increment + d],
+                    *const correction = nodes[Node::correction + d];
       for (unsigned int n = 0; n < nodes.size(); ++n)
         {
           dx[n] = dt * v[n] + correction[n];
@@ -272,7 +272,8 @@ SolidBody<dim>::energies() const
   double         kinetic = 0;
   for (int d = 0; d < dim; ++d)
     for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
-      kinetic += 0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] * nodes[Node::velocity + d][n];
+      kinetic +=
+        0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] * nodes[Node::velocity + d][n];
   std::vector<double> sums = {kinetic,
                               books.strain,
                               elements.hourglass_energy(),

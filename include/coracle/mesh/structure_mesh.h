@@ -92,7 +92,7 @@ public:
   std::vector<HangingNode> hanging_nodes;
 
 private:
-  void        refine_region(const Parameters &section);
+  void refine_region(const Parameters &section);
   /// Fill everything from the triangulation as it is.
   void number_nodes();
   void number_elements();

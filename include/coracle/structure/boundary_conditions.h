@@ -26,26 +26,39 @@ public:
   /// Collective. Throws UserError.
   BoundaryConditions(const Parameters &body_section, const StructureMesh<dim> &mesh);
 
-  /// Inverse mass becomes 0 where motion is prescribed.
+  /// Inverse mass of owned nodes becomes 0 where motion is prescribed.
   void constrain(Columns &nodes) const;
+
+  /// Work in setting new velocities: on the material, and of the supports [J].
+  struct Work
+  {
+    double strain = 0, external = 0;
+  };
 
   /**
    * Velocities of the prescribed directions for the step from `time` to time + dt: a velocity
    * function at its middle; for displacements what leads to the exact position at its end.
+   *
+   * @param duration time between the old and the new velocities [s]
    */
-  void prescribe_velocities(Columns &nodes, const double time, const double dt) const;
+  Work prescribe_velocities(Columns     &nodes,
+                            const double time,
+                            const double dt,
+                            const double duration) const;
 
 private:
   struct Condition
   {
-    std::vector<unsigned int>              nodes;
-    std::array<bool, dim>                  directions{};
-    bool                                   is_displacement = false;
+    /// Owned nodes of which each direction is prescribed.
+    std::array<std::vector<unsigned int>, dim> nodes;
+    bool                                       is_displacement = false;
     /// Null for conditions without motion.
     std::unique_ptr<dealii::Function<dim>> function;
   };
 
   Condition read(const Parameters &section, const StructureMesh<dim> &mesh) const;
+  double
+  velocity(const Condition &condition, Columns &nodes, unsigned int n, int d, double dt) const;
 
   std::vector<Condition> conditions;
 };

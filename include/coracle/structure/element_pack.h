@@ -31,17 +31,21 @@ unrolled(const F &f)
 /// dim components at the nodes of a pack, from `nodes` ordered [node][lane].
 template <int dim>
 inline void
-gather(const Columns                &columns,
-       const unsigned int            first,
-       const unsigned int           *nodes,
-       NodalVectors<dim, Pack8>     &result)
+gather(const Columns            &columns,
+       const unsigned int        first,
+       const unsigned int       *nodes,
+       NodalVectors<dim, Pack8> &result)
 {
   for (int d = 0; d < dim; ++d)
     {
-      const double *const column = columns[first + d];
+      const double *const c = columns[first + d];
       for (int n = 0; n < nodes_per_element<dim>; ++n)
-        for (int l = 0; l < pack_size; ++l)
-          result[d][n][l] = column[nodes[n * pack_size + l]];
+        {
+          // Built in registers; storing lanes to memory and loading them as a pack would stall.
+          const unsigned int *const i = nodes + n * pack_size;
+          result[d][n] =
+            Pack8{c[i[0]], c[i[1]], c[i[2]], c[i[3]], c[i[4]], c[i[5]], c[i[6]], c[i[7]]};
+        }
     }
 }
 
@@ -67,7 +71,7 @@ scatter_minus(const NodalVectors<dim, Pack8> &force,
 template <int dim, typename Material>
 struct PointState
 {
-  Symmetric<dim, Pack8>                                             stress;
+  Symmetric<dim, Pack8>                                                  stress;
   std::array<Pack8, (Material::n_history > 0 ? Material::n_history : 1)> history;
 
   void load(const Columns &columns, const unsigned int first, const unsigned int pack)
@@ -92,23 +96,8 @@ struct Limits
 {
   /// 1 / stable step [1/s].
   Pack8 rate{};
-  /// Lanes in which an element has failed, and the first pack with one.
-  unsigned int failed_pack = std::numeric_limits<unsigned int>::max();
-  Mask8        failed{};
-
-  void check(const Mask8 &is_good, const unsigned int pack)
-  {
-    if (failed_pack != std::numeric_limits<unsigned int>::max())
-      return;
-    long all = -1;
-    for (int l = 0; l < pack_size; ++l)
-      all &= is_good[l];
-    if (all == 0)
-      {
-        failed_pack = pack;
-        failed      = ~is_good;
-      }
-  }
+  /// Whether all elements are the right way out and their stresses numbers.
+  Mask8 is_good = ~Mask8{};
 };
 
 /**

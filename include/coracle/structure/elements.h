@@ -81,12 +81,16 @@ public:
     unsigned int              n_elements = 0, n_packs = 0;
     /// mass, reference volume, hourglass energy, hourglass forces, then stress and history of each
     /// point.
-    Columns                columns;
-    unsigned int           n_history = 0;
-    double                 hourglass_coefficient = 0;
-    static constexpr int   mass = 0, volume = 1, energy = 2, hourglass = 3;
-    static constexpr int   first_stress = 3 + dim * (dim == 2 ? 1 : 4);
+    Columns              columns;
+    unsigned int         n_history             = 0;
+    double               hourglass_coefficient = 0;
+    static constexpr int mass = 0, volume = 1, energy = 2, hourglass = 3;
+    static constexpr int first_stress = 3 + dim * (dim == 2 ? 1 : 4);
 
+    unsigned int node(const unsigned int element, const unsigned int n) const
+    {
+      return connectivity[(element / pack_size * n_nodes + n) * pack_size + element % pack_size];
+    }
     unsigned int stress(const unsigned int point) const
     {
       return first_stress + point * (Symmetric<dim, double>::size + n_history);
@@ -94,15 +98,15 @@ public:
   };
 
 private:
-  void allocate(const StructureMesh<dim> &mesh);
-  void compute_reference(const StructureMesh<dim> &mesh);
-  [[noreturn]] void report_failure(const Columns &nodes, const unsigned int element) const;
+  void              allocate(const StructureMesh<dim> &mesh);
+  void              compute_reference(const StructureMesh<dim> &mesh);
+  [[noreturn]] void report_failure(const Columns &nodes) const;
 
   const MaterialVariant material;
   const Integration     integration;
   unsigned int          n_elements = 0;
   Data                  data;
-  double            stable_step;
+  double                stable_step;
 };
 
 extern template class Elements<2>;

@@ -26,8 +26,8 @@ nodal_areas(const FacetCorners<dim> &x)
       }
   else
     {
-      constexpr double g = 0.57735026918962576451;
-      constexpr double xi[]  = {-1, 1, 1, -1}, eta[]  = {-1, -1, 1, 1};
+      constexpr double g    = 0.57735026918962576451;
+      constexpr double xi[] = {-1, 1, 1, -1}, eta[] = {-1, -1, 1, 1};
       for (int q = 0; q < 4; ++q)
         {
           dealii::Tensor<1, 3> t_xi, t_eta;

@@ -19,7 +19,8 @@
  */
 namespace coracle::internal
 {
-/// Cube root (3-D) or square root (2-D) of a ratio near 1: Halley's iteration, cubically convergent.
+/// Cube root (3-D) or square root (2-D) of a ratio near 1: Halley's iteration, cubically
+/// convergent.
 template <int dim>
 inline Pack8
 root_of_ratio(const Pack8 &a)
@@ -83,7 +84,7 @@ mean_dilatation(const PointGeometry<dim>       &geometry,
 {
   const Matrix<dim, Pack8> j0    = point_gradient<dim, Pack8>(reference_modes, q);
   const Pack8              det_0 = determinant<dim, Pack8>(j0);
-  f = scaled<dim>(product<dim, Pack8>(point_gradient<dim, Pack8>(modes, q),
+  f                 = scaled<dim>(product<dim, Pack8>(point_gradient<dim, Pack8>(modes, q),
                                       coracle::adjugate<dim, Pack8>(j0)),
                   Pack8(1. / det_0));
   const Pack8 ratio = mean_j * det_0 / geometry.det[q];
@@ -108,17 +109,17 @@ gather_scaled_modes(const Columns            &nodes,
 
 /// One step of one pack.
 template <int dim, typename Material>
-inline NodalVectors<dim, Pack8>
-full_step(const Material              &material,
-          const Columns               &nodes,
-          const double                 dt,
-          const unsigned int           pack,
+[[gnu::flatten]] inline NodalVectors<dim, Pack8>
+full_step(const Material               &material,
+          const Columns                &nodes,
+          const double                  dt,
+          const unsigned int            pack,
           typename Elements<dim>::Data &data,
-          Limits                      &limits)
+          Limits                       &limits)
 {
-  constexpr int n = nodes_per_element<dim>;
-  using Columns_  = NodeColumns<dim>;
-  using Data      = typename Elements<dim>::Data;
+  constexpr int n                        = nodes_per_element<dim>;
+  using Columns_                         = NodeColumns<dim>;
+  using Data                             = typename Elements<dim>::Data;
   const unsigned int *const connectivity = &data.connectivity[pack * n * pack_size];
 
   NodalVectors<dim, Pack8> x, b, modes, d_modes, reference_modes;
@@ -137,11 +138,11 @@ full_step(const Material              &material,
   geometry.compute(modes, d_modes);
 
   // The most compressed point stands for the whole element.
-  const Pack8 inverse_l = inverse_length<dim>(b, Pack8(n * geometry.smallest));
+  const Pack8        inverse_l = inverse_length<dim>(b, Pack8(n * geometry.smallest));
   Motion<dim, Pack8> motion{};
-  motion.density = load<Pack8>(data.columns[Data::mass] + pack * pack_size) / volume;
-  motion.length  = element_size<dim>(inverse_l);
-  motion.dt      = dt;
+  motion.density     = load<Pack8>(data.columns[Data::mass] + pack * pack_size) / volume;
+  motion.length      = element_size<dim>(inverse_l);
+  motion.dt          = dt;
   const Pack8 mean_j = volume / load<Pack8>(data.columns[Data::volume] + pack * pack_size);
 
   NodalVectors<dim, Pack8> force{};
@@ -173,11 +174,12 @@ full_step(const Material              &material,
       point.stress[i] -= s;
     for (int c = 0; c < point.stress.size; ++c)
       point.stress[c] *= weight;
-    add_point_force<dim, Pack8>(
-      product_transposed<dim>(point.stress, geometry.adjugate[q]), q, force);
+    add_point_force<dim, Pack8>(product_transposed<dim>(point.stress, geometry.adjugate[q]),
+                                q,
+                                force);
   });
   limit_step<dim>(material, motion.density, inverse_l, limits);
-  limits.check((geometry.smallest > 0.) & (abs(checked) < 1e300), pack);
+  limits.is_good &= (geometry.smallest > 0.) & (abs(checked) < 1e300);
 
   mean_stress /= volume;
   for (int j = 0; j < dim; ++j)

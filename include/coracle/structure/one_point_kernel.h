@@ -23,9 +23,7 @@ using HourglassForces = std::array<std::array<Pack8, n_hourglass_modes<dim>>, di
 
 template <int dim>
 inline Pack8
-hourglass_stiffness(const double                    modulus,
-                    const NodalVectors<dim, Pack8> &b,
-                    const Pack8                    &volume)
+hourglass_stiffness(const double modulus, const NodalVectors<dim, Pack8> &b, const Pack8 &volume)
 {
   const Pack8 l = inverse_length<dim>(b, volume);
   // sum B^2 / V = 4 / 2^dim V / L^2
@@ -122,13 +120,13 @@ stretch_springs(const Matrix<dim, Pack8>   &increment,
 
 /// One step of one pack, for materials in rate form: all in the current configuration.
 template <int dim, typename Material>
-inline NodalVectors<dim, Pack8>
-one_point_rate(const Material              &material,
-               const Columns               &nodes,
-               const double                 dt,
-               const unsigned int           pack,
+[[gnu::flatten]] inline NodalVectors<dim, Pack8>
+one_point_rate(const Material               &material,
+               const Columns                &nodes,
+               const double                  dt,
+               const unsigned int            pack,
                typename Elements<dim>::Data &data,
-               Limits                      &limits)
+               Limits                       &limits)
 {
   using Columns_ = NodeColumns<dim>;
   using Data     = typename Elements<dim>::Data;
@@ -139,31 +137,29 @@ one_point_rate(const Material              &material,
   gather<dim>(nodes, Columns_::increment, connectivity, dx);
   const Pack8 volume = mean_gradient<dim, Pack8>(x, b), inverse_volume = 1. / volume;
 
-  const Matrix<dim, Pack8> end =
-    scaled<dim>(contract_nodes<dim, Pack8>(dx, b), inverse_volume);
+  const Matrix<dim, Pack8> end = scaled<dim>(contract_nodes<dim, Pack8>(dx, b), inverse_volume);
   const Matrix<dim, Pack8> increment = mid_step_increment<dim, Pack8>(end);
   const Pack8              inverse_l = inverse_length<dim>(b, volume);
 
   Motion<dim, Pack8> motion{};
   motion.velocity_gradient = scaled<dim>(increment, splat<Pack8>(1. / dt));
-  motion.density           = load<Pack8>(data.columns[Data::mass] + pack * pack_size) * inverse_volume;
-  motion.length            = element_size<dim>(inverse_l);
-  motion.dt                = dt;
+  motion.density = load<Pack8>(data.columns[Data::mass] + pack * pack_size) * inverse_volume;
+  motion.length  = element_size<dim>(inverse_l);
+  motion.dt      = dt;
   PointState<dim, Material> point;
   point.load(data.columns, data.stress(0), pack);
   material.template update<dim, Pack8>(motion, point.stress, point.history.data());
   point.store(data.columns, data.stress(0), pack);
   limit_step<dim>(material, motion.density, inverse_l, limits);
-  limits.check((volume > 0.) & (abs(point.stress.trace()) < 1e300), pack);
+  limits.is_good &= (volume > 0.) & (abs(point.stress.trace()) < 1e300);
 
   const NodalVectors<dim, Pack8> x_modes = modes_of<dim>(x), dx_modes = modes_of<dim>(dx);
   NodalVectors<dim, Pack8>       mid_modes = x_modes;
   for (int j = 0; j < dim; ++j)
     for (int m = 0; m < nodes_per_element<dim>; ++m)
       mid_modes[j][m] -= 0.5 * dx_modes[j][m];
-  const double speed = material.sound_speed(material.reference_density()),
-               modulus =
-                 data.hourglass_coefficient * material.reference_density() * speed * speed;
+  const double speed   = material.sound_speed(material.reference_density()),
+               modulus = data.hourglass_coefficient * material.reference_density() * speed * speed;
   HourglassForces<dim> spring;
   stretch_springs<dim>(increment,
                        hourglass_amplitudes<dim>(dx_modes, increment, mid_modes),
@@ -185,13 +181,13 @@ one_point_rate(const Material              &material,
  * V0 Psi(mean F) + sum k/2 q^2.
  */
 template <int dim, typename Material>
-inline NodalVectors<dim, Pack8>
-one_point_hyperelastic(const Material              &material,
-                       const Columns               &nodes,
-                       const double                 dt,
-                       const unsigned int           pack,
+[[gnu::flatten]] inline NodalVectors<dim, Pack8>
+one_point_hyperelastic(const Material               &material,
+                       const Columns                &nodes,
+                       const double                  dt,
+                       const unsigned int            pack,
                        typename Elements<dim>::Data &data,
-                       Limits                      &limits)
+                       Limits                       &limits)
 {
   using Columns_ = NodeColumns<dim>;
   using Data     = typename Elements<dim>::Data;
@@ -204,9 +200,8 @@ one_point_hyperelastic(const Material              &material,
   const Pack8 volume_0 = mean_gradient<dim, Pack8>(x0, b0), inverse_volume_0 = 1. / volume_0,
               volume = mean_gradient<dim, Pack8>(x, b), inverse_l = inverse_length<dim>(b, volume);
 
-  Motion<dim, Pack8> motion{};
-  const Matrix<dim, Pack8> f =
-    scaled<dim>(contract_nodes<dim, Pack8>(x, b0), inverse_volume_0);
+  Motion<dim, Pack8>       motion{};
+  const Matrix<dim, Pack8> f = scaled<dim>(contract_nodes<dim, Pack8>(x, b0), inverse_volume_0);
   const Matrix<dim, Pack8> cofactor = adjugate<dim, Pack8>(f);
   const Pack8              j        = determinant<dim, Pack8>(f);
   const Matrix<dim, Pack8> end =
@@ -223,14 +218,13 @@ one_point_hyperelastic(const Material              &material,
   material.template update<dim, Pack8>(motion, point.stress, point.history.data());
   point.store(data.columns, data.stress(0), pack);
   limit_step<dim>(material, motion.density, inverse_l, limits);
-  limits.check((volume > 0.) & (j > 0.) & (abs(point.stress.trace()) < 1e300), pack);
+  limits.is_good &= (volume > 0.) & (j > 0.) & (abs(point.stress.trace()) < 1e300);
 
   const NodalVectors<dim, Pack8> x0_modes = modes_of<dim>(x0);
-  const double speed = material.sound_speed(material.reference_density()),
-               modulus =
-                 data.hourglass_coefficient * material.reference_density() * speed * speed;
+  const double                   speed    = material.sound_speed(material.reference_density()),
+               modulus = data.hourglass_coefficient * material.reference_density() * speed * speed;
   const Pack8          stiffness = hourglass_stiffness<dim>(modulus, b0, volume_0);
-  HourglassForces<dim> spring = hourglass_amplitudes<dim>(modes_of<dim>(x), f, x0_modes);
+  HourglassForces<dim> spring    = hourglass_amplitudes<dim>(modes_of<dim>(x), f, x0_modes);
   Pack8                energy{};
   for (auto &component : spring)
     for (Pack8 &q : component)
@@ -240,21 +234,18 @@ one_point_hyperelastic(const Material              &material,
       }
   store(data.columns[Data::energy] + pack * pack_size, energy);
   // First Piola-Kirchhoff stress J sigma F^-T.
-  return one_point_force<dim>(product_transposed<dim>(point.stress, cofactor),
-                              spring,
-                              x0_modes,
-                              b0,
-                              inverse_volume_0);
+  return one_point_force<dim>(
+    product_transposed<dim>(point.stress, cofactor), spring, x0_modes, b0, inverse_volume_0);
 }
 
 template <int dim, typename Material>
 inline NodalVectors<dim, Pack8>
-one_point_step(const Material              &material,
-               const Columns               &nodes,
-               const double                 dt,
-               const unsigned int           pack,
+one_point_step(const Material               &material,
+               const Columns                &nodes,
+               const double                  dt,
+               const unsigned int            pack,
                typename Elements<dim>::Data &data,
-               Limits                      &limits)
+               Limits                       &limits)
 {
   if constexpr (Material::needs_deformation_gradient)
     return one_point_hyperelastic<dim>(material, nodes, dt, pack, data, limits);

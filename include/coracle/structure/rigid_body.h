@@ -36,11 +36,22 @@ public:
 
   /// Contact impulse on a node [N s]; its moment is taken about the centre.
   void add_contact_impulse(const unsigned int node, const Vector &impulse);
+  /// Impulse and its moment about the centre [N s, N m s], from one rank only.
+  void add_contact_impulse(const Vector &value, const Vector3 &moment)
+  {
+    impulse.sum += value;
+    impulse.moment += moment;
+  }
   /// Sum over ranks, change velocity and spin. Collective.
   void apply_contact_impulses();
 
   /// Push the body at a node by what the correction does to its centre and orientation [kg m].
   void add_correction(const unsigned int node, const Vector &correction);
+  void add_correction(const Vector &value, const Vector3 &moment)
+  {
+    correction.sum += value;
+    correction.moment += moment;
+  }
   void apply_corrections();
 
   void move(const double dt);
@@ -70,13 +81,13 @@ private:
     Vector3 moment;
   };
 
-  void   read_mass(const Parameters &body);
-  void   read_motion(const Parameters &body);
-  void   read_initial_motion(const Parameters &body);
-  void   prescribe(const double dt);
-  void   set_node_velocities();
-  void   set_node_positions();
-  void   add(Push &push, const unsigned int node, const Vector &value) const;
+  void read_mass(const Parameters &body);
+  void read_motion(const Parameters &body);
+  void read_initial_motion(const Parameters &body);
+  void prescribe(const double dt);
+  void set_node_velocities();
+  void set_node_positions();
+  void add(Push &push, const unsigned int node, const Vector &value) const;
   /// Sum over ranks, and reset.
   Push   total(Push &push) const;
   double kinetic_energy() const;

@@ -32,15 +32,15 @@ public:
   RigidRotation(const dealii::Tensor<2, 3> &inertia, const std::array<bool, 3> &is_free);
 
   /// Spin of all axes [rad/s].
-  void    set_spin(const Vector3 &spin);
+  void set_spin(const Vector3 &spin);
   /// Given spin of the axes that are not free; entries of free ones are ignored.
-  void    prescribe(const Vector3 &spin);
+  void prescribe(const Vector3 &spin);
   /// Angular impulse [N m s]; what supports take is left out.
-  void    add_angular_impulse(const Vector3 &impulse);
+  void add_angular_impulse(const Vector3 &impulse);
   /// Turn by what the spin gives in a time [s].
-  void    advance(const double dt);
+  void advance(const double dt);
   /// Turn by a rotation vector [rad].
-  void    turn(const Vector3 &rotation);
+  void turn(const Vector3 &rotation);
 
   Vector3 spin() const;
   /// I omega [kg m^2/s].

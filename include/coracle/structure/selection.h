@@ -39,7 +39,8 @@ private:
   std::vector<double> box;
 };
 
-/// Words of an entry, separated by spaces or commas, each one of those allowed; otherwise UserError.
+/// Words of an entry, separated by spaces or commas, each one of those allowed; otherwise
+/// UserError.
 std::set<std::string> read_words(const Parameters               &section,
                                  const std::string              &entry,
                                  const std::vector<std::string> &allowed);

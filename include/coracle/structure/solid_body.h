@@ -40,7 +40,8 @@ public:
             const dealii::Tensor<1, dim> &gravity,
             MPI_Comm                      comm);
 
-  /// Of this rank's elements as they are now, infinite without any [s]. Multiply by a safety factor.
+  /// Of this rank's elements as they are now, infinite without any [s]. Multiply by a safety
+  /// factor.
   double stable_time_step() const { return elements.stable_time_step(); }
 
   /// Loads at `time`, and sums over ranks of them and of the internal force.
@@ -58,7 +59,8 @@ public:
   void apply_corrections();
 
   void move(const double dt);
-  /// Stresses, and internal forces for the next step. Throws RunFailure, on the rank concerned only.
+  /// Stresses, and internal forces for the next step. Throws RunFailure, on the rank concerned
+  /// only.
   void update_stress(const double dt);
 
   /// Collective sums.

@@ -23,10 +23,10 @@ class StructuralBody
 public:
   using Vector = dealii::Tensor<1, dim>;
 
-  const std::string         &name() const { return body_name; }
-  const StructureMesh<dim>  &mesh() const { return *body_mesh; }
-  const Columns             &nodes() const { return node_columns; }
-  Columns                   &nodes() { return node_columns; }
+  const std::string        &name() const { return body_name; }
+  const StructureMesh<dim> &mesh() const { return *body_mesh; }
+  const Columns            &nodes() const { return node_columns; }
+  Columns                  &nodes() { return node_columns; }
 
   /// Boundary facets of this rank's elements, see mesh/structure_mesh.h for their orientation.
   const std::vector<BoundaryFacet<dim>> &facets() const { return body_mesh->facets; }
@@ -41,7 +41,10 @@ public:
     return dealii::Point<dim>(vector(NodeColumns<dim>::position, node));
   }
   /// Predicted velocity at the middle of the step [m/s].
-  Vector velocity(const unsigned int node) const { return vector(NodeColumns<dim>::velocity, node); }
+  Vector velocity(const unsigned int node) const
+  {
+    return vector(NodeColumns<dim>::velocity, node);
+  }
   /// 1/m in each direction, 0 where the motion is prescribed [1/kg].
   Vector inverse_mass(const unsigned int node) const
   {

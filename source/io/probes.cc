@@ -129,7 +129,8 @@ BodyPointProbe<dim>::BodyPointProbe(const ProbeDescription<dim> &description,
         lowest     = nodes.keys[i];
         local_node = i;
       }
-  found_key = min(lowest, comm);
+  // Not Utilities::MPI::min(): with MPI_UNSIGNED_LONG, Open MPI 4.1 compares as if signed.
+  MPI_Allreduce(&lowest, &found_key, 1, MPI_UINT64_T, MPI_MIN, comm);
   if (lowest != found_key || lowest == std::numeric_limits<std::uint64_t>::max())
     local_node = -1;
   AssertThrow(sum(local_node >= 0 ? 1 : 0, comm) == 1,

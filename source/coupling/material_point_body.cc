@@ -141,7 +141,7 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
   stress_update = update == "usf" ? StressUpdate::usf :
                   update == "usl" ? StressUpdate::usl :
                                     StressUpdate::musl;
-  if (!body.text("Body force").empty())
+  if (body.is_set("Body force"))
     body_force = body.function<dim>("Body force", dim);
   generate(body, octree);
 }
@@ -163,7 +163,7 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
 
   const std::vector<double>              constant = body.list("Initial velocity");
   std::unique_ptr<dealii::Function<dim>> varying;
-  if (!body.text("Initial velocity function").empty())
+  if (body.is_set("Initial velocity function"))
     varying = body.function<dim>("Initial velocity function", dim);
   if (!constant.empty() && constant.size() != dim)
     throw body.error("Initial velocity",
@@ -213,7 +213,7 @@ void
 MaterialPointBody<dim>::set_initial_pressure(const Parameters &body)
 {
   using Layout = ParticleLayout<dim>;
-  if (body.text("Initial pressure").empty())
+  if (!body.is_set("Initial pressure"))
     return;
   if (points.layout().n_stress != 1 &&
       !std::holds_alternative<Fluid<WeaklyCompressible, true>>(material) &&

@@ -224,7 +224,7 @@ MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
                                       body.points);
   body.internal_energy += body.sweep.work;
   energy.internal += body.sweep.work;
-  if (body.sweep.bad_row >= 0)
+  if (body.sweep.bad_row >= 0 && !failure)
     {
       const auto        &points = body.points;
       std::ostringstream details;
@@ -232,9 +232,9 @@ MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
               << points.position(body.sweep.bad_row) << ") m, t = " << time << " s: density "
               << points.column(ParticleLayout<dim>::density)[body.sweep.bad_row] << " kg/m^3, stress "
               << points.column(ParticleLayout<dim>::stress)[body.sweep.bad_row] << " Pa";
-      throw RunFailure("the state of a particle is no longer physical",
-                       details.str(),
-                       "lower 'Safety factor', or look at what hits this place");
+      failure.emplace("the state of a particle is no longer physical",
+                      details.str(),
+                      "lower Time/Safety factor, or look at what hits this place");
     }
 }
 
@@ -260,8 +260,16 @@ void
 MaterialPointSystem<dim>::locate(const double time)
 {
   for (auto &body : bodies)
-    if (move_and_locate(octree, boundary, body.margin_of_shape(), time, body.points) > 0)
-      renumbered = true;
+    try
+      {
+        if (move_and_locate(octree, boundary, body.margin_of_shape(), time, body.points) > 0)
+          renumbered = true;
+      }
+    catch (const RunFailure &lost)
+      {
+        if (!failure)
+          failure.emplace(lost);
+      }
   if (++steps_since_sort >= steps_between_sorts)
     {
       for (auto &body : bodies)

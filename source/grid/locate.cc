@@ -3,6 +3,7 @@
 #include <coracle/grid/transfer.h>
 
 #include <map>
+#include <optional>
 #include <sstream>
 
 namespace coracle
@@ -13,8 +14,8 @@ template <int dim>
 using Layout = ParticleLayout<dim>;
 
 template <int dim>
-[[noreturn]] void
-fail_lost(const MaterialPoints<dim> &points, const std::size_t row, const std::string &what, const double time)
+RunFailure
+lost(const MaterialPoints<dim> &points, const std::size_t row, const std::string &what, const double time)
 {
   std::ostringstream details;
   details.precision(6);
@@ -23,9 +24,9 @@ fail_lost(const MaterialPoints<dim> &points, const std::size_t row, const std::s
   for (int d = 0; d < dim; ++d)
     details << (d > 0 ? " " : "") << points.column(Layout<dim>::velocity + d)[row];
   details << ") m/s: " << what;
-  throw RunFailure("a particle left the box",
-                   details.str(),
-                   "enlarge the box, make the face open, or lower the time step's safety factor");
+  return RunFailure("a particle left the box",
+                    details.str(),
+                    "enlarge the box, make the face open, or lower the time step's safety factor");
 }
 
 // Rows that are not wholly in their home cell any more, in order; positions are updated on the way.
@@ -111,6 +112,7 @@ move_and_locate(const Octree<dim>      &octree,
 {
   const std::vector<unsigned int>    leavers = take_positions(octree, margin_of_shape, points);
   std::map<int, std::vector<double>> outgoing;
+  std::optional<RunFailure>          failure;
   points.strays.clear();
   for (const unsigned int row : leavers)
     {
@@ -130,12 +132,15 @@ move_and_locate(const Octree<dim>      &octree,
       else
         {
           const unsigned int face = boundary.face_left(x);
+          std::string        why;
           if (!std::isfinite(x.norm()))
-            fail_lost(points, row, "its position is not a number", time);
-          if (octree.box().point_inside(x))
-            fail_lost(points, row, "it crossed more than a whole cell in one step", time);
-          if (boundary.condition(face) != FaceCondition::open)
-            fail_lost(points, row, "face '" + BoxBoundary<dim>::face_name(face) + "' is not open", time);
+            why = "its position is not a number";
+          else if (octree.box().point_inside(x))
+            why = "it crossed more than a whole cell in one step";
+          else if (boundary.condition(face) != FaceCondition::open)
+            why = "face '" + BoxBoundary<dim>::face_name(face) + "' is not open";
+          if (!why.empty() && !failure)
+            failure.emplace(lost(points, row, why, time));
           points.remove(row);
           ++points.ledger.removed;
         }
@@ -144,6 +149,9 @@ move_and_locate(const Octree<dim>      &octree,
   const unsigned int received = exchange_rows(octree, outgoing, points);
   for (unsigned int row = first; row < points.n_rows(); ++row)
     points.strays.push_back({row, octree.find(points.position(row))});
+  // Only now, because other ranks wait for this one in the exchange.
+  if (failure)
+    throw *failure;
   return received;
 }
 

@@ -107,25 +107,28 @@ NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
         }
       m[Motion::mass] = mass;
     }
-  fix_boundary_nodes();
+  fix_boundary_nodes(dt, gravity);
   distribute();
 }
 
 template <int dim>
 void
-NodalField<dim>::fix_boundary_nodes()
+NodalField<dim>::fix_boundary_nodes(const double dt, const dealii::Tensor<1, dim> &gravity)
 {
   for (const unsigned int i : boundary.fixed_nodes())
     if (i < octree.n_owned_nodes())
       for (unsigned int d = 0; d < dim; ++d)
         if (boundary.fixed(i) & (1u << d))
           {
-            // The change takes what particles brought here, so that they stop as well.
-            NodeRecord  &m     = motions[i];
-            const double taken = 0.5 * m[Motion::mass] * m[Motion::velocity + d] * m[Motion::velocity + d];
-            books.boundary += taken;
-            books.given -= taken;
-            m[Motion::change + d] -= m[Motion::velocity + d];
+            NodeRecord  &m    = motions[i];
+            const double mass = m[Motion::mass], free = m[Motion::velocity + d],
+                         change = m[Motion::change + d], before = free - change;
+            // Forces on a fixed node do no work; what is lost is what particles brought there.
+            books.gravity -= mass * dt * gravity[d] * (before + 0.5 * change);
+            books.given -= 0.5 * mass * free * free;
+            books.boundary += 0.5 * mass * before * before;
+            // The change takes what particles brought, so that they stop as well.
+            m[Motion::change + d]   = -before;
             m[Motion::velocity + d] = 0;
           }
 }

@@ -7,6 +7,7 @@
 #include <coracle/grid/nodal_field.h>
 
 #include <list>
+#include <optional>
 #include <vector>
 
 namespace coracle
@@ -41,6 +42,10 @@ public:
   void update_stresses(const double time, const double dt);
   /// Positions are taken; strays, migration, open faces; sorting when due. Collective.
   void locate(const double time);
+
+  /// The first thing that went wrong on this rank in gather, update_stresses or locate. They go on
+  /// to their end, because other ranks wait for this one; the step looks here afterwards.
+  std::optional<RunFailure> failure;
 
   /// Did rows change their places, or new ones arrive, since the last call?
   bool take_renumbered();

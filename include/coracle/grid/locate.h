@@ -11,7 +11,7 @@ namespace coracle
  * strays, those on another rank's leaves are sent there, those that left
  * through an open face are removed and counted. Collective.
  *
- * Throws RunFailure for a particle that is outside of the box other than
+ * Throws RunFailure, on the rank concerned only and after all communication, for a particle that is outside of the box other than
  * through an open face, or where no neighbouring rank has a leaf: it names
  * the particle, the place and the face.
  *

@@ -83,8 +83,8 @@ public:
   std::size_t            memory_consumption() const;
 
 private:
-  void   fix_boundary_nodes();
-  void   shift_hanging_nodes();
+  void fix_boundary_nodes(const double dt, const dealii::Tensor<1, dim> &gravity);
+  void shift_hanging_nodes();
   void condense(NodeRecords &r) const;
   void interpolate_hanging(NodeRecords &r) const;
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/contact_system.h>
+#include <coracle/coupling/material_point_system.h>
+#include <coracle/coupling/structure_system.h>
+
+namespace coracle
+{
+/**
+ * Contact between material points and structures: translates the bodies of
+ * both sides into points, facets and rows of unknowns, and impulses back.
+ *
+ * A particle is a point whose velocity is the grid's at its place, because that
+ * is what moves it (Song, Liu & Zhang 2020, Eqs. 29-33): its row are the shape
+ * functions of the grid's nodes, hanging nodes replaced by their parents.
+ */
+template <int dim>
+class ContactCoupling
+{
+public:
+  ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm);
+
+  /// Contacts at the start of the step. Collective.
+  void find(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
+  /// Impulses that keep particles out, given to both sides. Collective.
+  void solve(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
+  /// Independent check of all particles near the surface over the step just moved. Collective.
+  void audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
+
+  const contact::ContactReport &report() const { return system.report(); }
+  std::uint64_t                 n_penetrations() const { return penetrations; }
+
+  /// Momentum that contact has given to each material point body so far; this rank's share [N s].
+  const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
+
+  /// Particles that lie in a body or nearer to it than the contact distance; a UserError if any. Collective.
+  void refuse_initial_overlaps(const Parameters         &root,
+                               MaterialPointSystem<dim> &points,
+                               StructureSystem<dim>     &structure);
+
+private:
+  void make_point_sets(MaterialPointSystem<dim> &points, const bool renumbered);
+  /// Grid nodes and weights of one particle, hanging nodes replaced.
+  template <typename Action>
+  void for_each_node(const MaterialPointSystem<dim> &points,
+                     const unsigned int              set,
+                     const unsigned int              row,
+                     const Action                   &action) const;
+
+  MPI_Comm                                     comm;
+  contact::ContactSystem<dim>                  system;
+  std::vector<contact::PointSet<dim>>          sets;
+  std::vector<std::vector<std::uint64_t>>      ids;
+  std::vector<std::vector<double>>             radii;
+  std::vector<dealii::Tensor<1, dim>>          impulse, correction, received;
+  std::uint64_t                                penetrations = 0;
+};
+} // namespace coracle

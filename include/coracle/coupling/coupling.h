@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/base/timer.h>
+#include <coracle/coupling/contact_coupling.h>
+
+namespace coracle
+{
+/// Section `Time`, and what holds for the whole case.
+template <int dim>
+struct CouplingOptions
+{
+  double                 safety_factor, largest_step;
+  dealii::Tensor<1, dim> gravity;
+
+  static void            declare(Declaration &root);
+  static CouplingOptions read(const Parameters &root);
+};
+
+/**
+ * The coupled problem and its step. This is the one place that knows the order
+ * in which things happen.
+ */
+template <int dim>
+class Coupling
+{
+public:
+  /// All sections that every case has. Collective; throws UserError.
+  static void declare(Declaration &root);
+  Coupling(const Parameters &root, MPI_Comm comm);
+
+  /// One step; no longer than up to `end_time`. Collective; throws RunFailure.
+  void advance(const double end_time);
+
+  double        time() const { return current_time; }
+  double        last_step() const { return current_dt; }
+  std::uint64_t step() const { return n_steps; }
+
+  /// Estimate before the first step, for --check.
+  double choose_time_step() const;
+
+  const CouplingOptions<dim> options;
+  MaterialLibrary            materials;
+  StructureSystem<dim>       structure;
+  MaterialPointSystem<dim>   points;
+  ContactCoupling<dim>       contacts;
+  TimingTable                timed;
+
+  double        particle_steps = 0, element_steps = 0;
+  std::uint64_t contact_steps = 0, unconverged_contact_steps = 0;
+  /// Smallest g - R of all contacts since the last report [m]; the report resets it.
+  double worst_gap = 0;
+
+private:
+  /// What went wrong on any rank, and the particle ledger: the same exception on all ranks.
+  void check_state() const;
+  void count_work();
+
+  MPI_Comm      comm;
+  double        current_time = 0, current_dt = 0;
+  std::uint64_t n_steps = 0;
+};
+} // namespace coracle

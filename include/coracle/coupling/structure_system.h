@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <coracle/contact/contact_system.h>
+#include <coracle/structure/rigid_body.h>
+#include <coracle/structure/solid_body.h>
+
+#include <list>
+#include <optional>
+
+namespace coracle
+{
+/**
+ * All structural bodies of a run: each function is one line of the step, and
+ * their surfaces together are what contact meets.
+ */
+template <int dim>
+class StructureSystem
+{
+public:
+  /// Section `Bodies`. Collective.
+  StructureSystem(const Parameters             &root,
+                  const MaterialLibrary        &materials,
+                  const dealii::Tensor<1, dim> &gravity,
+                  MPI_Comm                      comm);
+
+  /// Over all ranks [s].
+  double stable_time_step() const;
+
+  void assemble_forces(const double time);
+  void predict_velocities(const double dt);
+  void move(const double dt);
+  void update_stresses(const double dt);
+
+  /// The first thing that went wrong in update_stresses on this rank, see MaterialPointSystem.
+  std::optional<RunFailure> failure;
+
+  /// The facets this rank owns, nodes at their places with their predicted velocities.
+  const contact::Surface<dim> &publish_surface();
+  /// In the order of SurfaceBody::rigid_body.
+  std::vector<contact::RigidUnknown<dim>> rigid_unknowns() const;
+
+  /**
+   * What contact found, to the bodies. Collective.
+   * @param impulse, correction one per node of the published surface [N s, kg m]
+   * @param rigid one per rigid body, the same on all ranks
+   */
+  void apply_contact(
+    const std::vector<dealii::Tensor<1, dim>>                            &impulse,
+    const std::vector<dealii::Tensor<1, dim>>                            &correction,
+    const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid);
+
+  /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
+  const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
+
+  bool empty() const { return solids.empty() && rigids.empty(); }
+
+  std::list<SolidBody<dim>> solids;
+  std::list<RigidBody<dim>> rigids;
+
+private:
+  void make_surface();
+  /// Calls action(body, first node of the body in the surface) for all bodies, solids first.
+  template <typename Action>
+  void for_each_surface(const Action &action);
+
+  MPI_Comm                  comm;
+  contact::Surface<dim>     surface;
+  std::vector<unsigned int> first_node;
+  std::vector<dealii::Tensor<1, dim>> received;
+};
+} // namespace coracle

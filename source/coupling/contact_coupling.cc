@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/contact_coupling.h>
+
+namespace coracle
+{
+namespace
+{
+template <int dim>
+using Layout = ParticleLayout<dim>;
+
+// Keys of grid nodes start where no structure node's key can be.
+constexpr std::uint64_t first_grid_key = std::uint64_t(1) << 63;
+constexpr unsigned int  field_shift    = 48;
+} // namespace
+
+template <int dim>
+ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm)
+  : comm(comm)
+  , system(options, comm)
+{}
+
+template <int dim>
+void
+ContactCoupling<dim>::make_point_sets(MaterialPointSystem<dim> &points, const bool renumbered)
+{
+  sets.resize(points.bodies.size());
+  ids.resize(points.bodies.size());
+  radii.resize(points.bodies.size());
+  unsigned int s = 0;
+  for (auto &body : points.bodies)
+    {
+      auto                    &set = sets[s];
+      const MaterialPoints<dim> &p = body.points;
+      set.n_points                 = p.n_rows();
+      set.mass                     = p.column(Layout<dim>::mass);
+      for (int d = 0; d < dim; ++d)
+        {
+          set.position[d] = p.column(Layout<dim>::position + d);
+          set.velocity[d] = p.column(Layout<dim>::velocity + d);
+        }
+      if (renumbered)
+        {
+          ids[s].assign(p.column(Layout<dim>::id), p.column(Layout<dim>::id) + p.n_rows());
+          radii[s].resize(p.n_rows());
+          for (std::size_t row = 0; row < p.n_rows(); ++row)
+            radii[s][row] = body.radius_factor * p.column(Layout<dim>::size)[row];
+          set.group_begin.clear();
+          for (const unsigned int cell : p.occupied_cells())
+            set.group_begin.push_back(p.cell_begin()[cell]);
+          if (!set.group_begin.empty())
+            set.group_begin.push_back(p.cell_begin().back());
+        }
+      set.ids           = ids[s].data();
+      set.radius_column = radii[s].data();
+      ++s;
+    }
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::find(MaterialPointSystem<dim> &points,
+                           StructureSystem<dim>     &structure,
+                           const double              dt)
+{
+  const bool renumbered = points.take_renumbered();
+  make_point_sets(points, renumbered);
+  if (renumbered)
+    system.points_renumbered();
+  system.find(structure.publish_surface(), sets, dt);
+}
+
+template <int dim>
+template <typename Action>
+void
+ContactCoupling<dim>::for_each_node(const MaterialPointSystem<dim> &points,
+                                    const unsigned int              set,
+                                    const unsigned int              row,
+                                    const Action                   &action) const
+{
+  const auto  &body   = *std::next(points.bodies.begin(), set);
+  const auto  &octree = points.octree;
+  const double half   = body.margin_of_shape() * body.points.column(Layout<dim>::size)[row];
+  for_each_piece(octree,
+                 body.points.position(row),
+                 half,
+                 [&](const int leaf, const dealii::Point<dim> &piece, const double fraction) {
+                   const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
+                   for (int c = 0; c < (1 << dim); ++c)
+                     {
+                       const unsigned int node   = octree.nodes(leaf)[c];
+                       const double       weight = fraction * shape.value[c];
+                       const int          hanging = octree.hanging_index(node);
+                       if (hanging < 0)
+                         action(node, weight);
+                       else
+                         for (const auto &[parent, share] : octree.hanging_nodes()[hanging].parents)
+                           action(parent, share * weight);
+                     }
+                 });
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
+                            StructureSystem<dim>     &structure,
+                            const double              dt)
+{
+  const unsigned int n_nodes = points.octree.n_nodes();
+  std::vector<NodalField<dim> *> fields;
+  for (auto &field : points.fields)
+    fields.push_back(&field);
+  std::vector<unsigned int> field_of_set;
+  for (const auto &body : points.bodies)
+    field_of_set.push_back(body.field);
+
+  system.build_rows(
+    [&](const unsigned int set, const unsigned int row, auto &entries) {
+      for_each_node(points, set, row, [&](const unsigned int node, const double weight) {
+        entries.push_back({field_of_set[set] * n_nodes + node, weight});
+      });
+    },
+    [&](const unsigned int number) {
+      const unsigned int    field = number / n_nodes, node = number % n_nodes;
+      contact::Unknown<dim> unknown;
+      unknown.velocity     = fields[field]->velocity(node);
+      unknown.inverse_mass = fields[field]->inverse_mass(node);
+      unknown.key   = first_grid_key + (std::uint64_t(field) << field_shift) + points.octree.global_node(node);
+      unknown.owner = points.octree.node_owner(node);
+      return unknown;
+    });
+  system.solve(structure.rigid_unknowns(), dt);
+  if (system.report().n_contacts == 0)
+    return;
+  received.resize(sets.size());
+  for (unsigned int c = 0; c < system.contacts().size(); ++c)
+    received[system.contacts()[c].set] += system.impulses().impulse[c];
+
+  system.point_impulses([&](const unsigned int number, const auto &p, const auto &c) {
+    fields[number / n_nodes]->add_impulse(number % n_nodes, p, c);
+  });
+  points.apply_impulses();
+
+  const std::size_t n_surface_nodes = structure.publish_surface().nodes.size();
+  impulse.assign(n_surface_nodes, dealii::Tensor<1, dim>());
+  correction.assign(n_surface_nodes, dealii::Tensor<1, dim>());
+  system.surface_impulses(impulse, correction);
+  structure.apply_contact(impulse, correction, system.rigid_impulses());
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &, StructureSystem<dim> &)
+{}
+template <int dim>
+void
+ContactCoupling<dim>::refuse_initial_overlaps(const Parameters &,
+                               MaterialPointSystem<dim> &,
+                               StructureSystem<dim>     &)
+{}
+template class ContactCoupling<2>;
+template class ContactCoupling<3>;
+} // namespace coracle

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/coupling.h>
+
+#include <sstream>
+
+namespace coracle
+{
+template <int dim>
+void
+CouplingOptions<dim>::declare(Declaration &root)
+{
+  root.list("Gravity", "", "m/s^2", "g", "Acceleration of everything; empty is none.");
+  Declaration &time = root.section("Time", "How long steps are.");
+  time.quantity("Safety factor",
+                "0.5",
+                "1",
+                "s_f",
+                "Step over the smallest of the stable steps of elements and cells.",
+                1e-6,
+                1.);
+  time.quantity("Largest step", "1e300", "s", "", "Steps are never longer.", 1e-300);
+}
+
+template <int dim>
+CouplingOptions<dim>
+CouplingOptions<dim>::read(const Parameters &root)
+{
+  CouplingOptions result;
+  result.safety_factor = root.section("Time").quantity("Safety factor");
+  result.largest_step  = root.section("Time").quantity("Largest step");
+  const auto gravity   = root.list("Gravity");
+  if (!gravity.empty() && gravity.size() != dim)
+    throw root.error("Gravity",
+                     "gravity has the wrong number of components",
+                     std::to_string(gravity.size()) + " components",
+                     "give " + std::to_string(dim) + ", one for each direction");
+  for (unsigned int d = 0; d < gravity.size(); ++d)
+    result.gravity[d] = gravity[d];
+  return result;
+}
+
+template <int dim>
+void
+Coupling<dim>::declare(Declaration &root)
+{
+  CouplingOptions<dim>::declare(root);
+  Declaration &grid =
+    root.section("Grid", "The background grid of material points: a box of square or cubic cells.");
+  OctreeDescription<dim>::declare(grid);
+  BoxBoundary<dim>::declare(grid);
+  MaterialLibrary::declare(root);
+  Declaration &body = root.named_sections("Bodies", "body", "Everything that moves, each with a name.");
+  body.choice("Kind",
+              "material points",
+              {"material points", "solid", "rigid"},
+              "material points: fluid, or solid that deforms without limit; solid: finite elements; "
+              "rigid: a mesh that keeps its shape.");
+  MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
+  SolidBody<dim>::declare(body.when("Kind", "solid"));
+  RigidBody<dim>::declare(body.when("Kind", "rigid"));
+  contact::ContactOptions::declare(
+    root.section("Contact", "Between material points and the surfaces of structures."));
+}
+
+template <int dim>
+Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
+  : options(CouplingOptions<dim>::read(root))
+  , materials(root)
+  , structure(root, materials, options.gravity, comm)
+  , points(root, materials, options.gravity, 0, comm)
+  , contacts(contact::ContactOptions(root.section("Contact")), comm)
+  , comm(comm)
+{
+  contacts.refuse_initial_overlaps(root, points, structure);
+}
+
+template <int dim>
+double
+Coupling<dim>::choose_time_step() const
+{
+  const double stable = std::min(structure.stable_time_step(), points.stable_time_step());
+  return std::min(options.largest_step, options.safety_factor * stable);
+}
+
+template <int dim>
+void
+Coupling<dim>::advance(const double end_time)
+{
+  double dt = timed("time step", [&] { return choose_time_step(); });
+  // No sliver of a step at the end: the last two share what is left.
+  const double left = end_time - current_time;
+  dt                = left <= dt ? left : std::min(dt, 0.5 * left);
+
+  timed("particles to grid", [&] { points.gather(current_time, dt); });
+  timed("structure forces", [&] { structure.assemble_forces(current_time); });
+  timed("predictor", [&] {
+    points.predict(dt);
+    structure.predict_velocities(dt);
+  });
+
+  timed("contact search", [&] { contacts.find(points, structure, dt); });
+  timed("contact solve", [&] { contacts.solve(points, structure, dt); });
+
+  timed("move", [&] {
+    points.move(dt);
+    structure.move(dt);
+  });
+  timed("penetration audit", [&] { contacts.audit(points, structure); });
+
+  current_time += dt;
+  current_dt = dt;
+  ++n_steps;
+
+  timed("particle stress", [&] { points.update_stresses(current_time, dt); });
+  timed("element stress", [&] { structure.update_stresses(dt); });
+  timed("locate", [&] { points.locate(current_time); });
+  timed("checks", [&] { check_state(); });
+  count_work();
+}
+
+template <int dim>
+void
+Coupling<dim>::check_state() const
+{
+  mpi::agree(
+    [&] {
+      if (points.failure)
+        throw *points.failure;
+      if (structure.failure)
+        throw *structure.failure;
+    },
+    comm);
+  const std::int64_t error = points.ledger_error();
+  if (error != 0)
+    throw RunFailure("particles were lost or made from nothing",
+                     std::to_string(error) + " more created than accounted for at t = " +
+                       std::to_string(current_time) + " s",
+                     "this is an error of the program: please report it with the case");
+}
+
+template <int dim>
+void
+Coupling<dim>::count_work()
+{
+  particle_steps += points.n_particles();
+  for (const auto &body : structure.solids)
+    element_steps += body.mesh().n_elements();
+  const auto &report = contacts.report();
+  if (report.n_contacts > 0)
+    {
+      ++contact_steps;
+      unconverged_contact_steps += !report.solver.velocity.converged;
+      worst_gap = std::min(worst_gap, report.worst_gap);
+    }
+}
+
+template struct CouplingOptions<2>;
+template struct CouplingOptions<3>;
+template class Coupling<2>;
+template class Coupling<3>;
+} // namespace coracle

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/structure_system.h>
+
+#include <map>
+
+namespace coracle
+{
+template <int dim>
+StructureSystem<dim>::StructureSystem(const Parameters             &root,
+                                      const MaterialLibrary        &materials,
+                                      const dealii::Tensor<1, dim> &gravity,
+                                      MPI_Comm                      comm)
+  : comm(comm)
+{
+  const Parameters bodies = root.section("Bodies");
+  for (const std::string &name : bodies.section_names())
+    {
+      const Parameters  body = bodies.section(name);
+      const std::string kind = body.choice("Kind");
+      if (kind == "solid")
+        solids.emplace_back(body, materials, gravity, comm);
+      else if (kind == "rigid")
+        rigids.emplace_back(body, gravity, comm);
+    }
+  make_surface();
+}
+
+template <int dim>
+template <typename Action>
+void
+StructureSystem<dim>::for_each_surface(const Action &action)
+{
+  unsigned int i = 0;
+  for (auto &body : solids)
+    action(body, i++);
+  for (auto &body : rigids)
+    action(body, i++);
+}
+
+template <int dim>
+void
+StructureSystem<dim>::make_surface()
+{
+  surface = contact::Surface<dim>();
+  first_node.clear();
+  int           n_rigid   = 0;
+  std::uint64_t first_key = 0, first_facet_key = 0;
+  for_each_surface([&](auto &body, const unsigned int index) {
+    contact::SurfaceBody description;
+    description.thickness = body.thickness();
+    description.friction  = body.friction();
+    if constexpr (std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>)
+      description.rigid_body = n_rigid++;
+    surface.bodies.push_back(description);
+    received.emplace_back();
+
+    first_node.push_back(surface.nodes.size());
+    std::map<unsigned int, unsigned int> place;
+    for (const unsigned int node : body.surface_nodes())
+      {
+        place[node] = surface.nodes.size();
+        surface.nodes.emplace_back();
+        surface.nodes.back().key   = first_key + body.key(node);
+        surface.nodes.back().owner = body.owner(node);
+      }
+    std::uint64_t largest_key = 0;
+    for (const auto &facet : body.facets())
+      {
+        contact::Facet<dim> f;
+        for (unsigned int v = 0; v < f.nodes.size(); ++v)
+          f.nodes[v] = place.at(facet.nodes[v]);
+        f.body      = index;
+        f.key       = first_facet_key + facet.key;
+        largest_key = std::max(largest_key, facet.key);
+        surface.facets.push_back(f);
+      }
+    first_key += body.mesh().n_global_nodes();
+    first_facet_key += mpi::max(largest_key, comm) + 1;
+  });
+}
+
+template <int dim>
+double
+StructureSystem<dim>::stable_time_step() const
+{
+  double dt = std::numeric_limits<double>::infinity();
+  for (const auto &body : solids)
+    dt = std::min(dt, body.stable_time_step());
+  return mpi::min(dt, comm);
+}
+
+template <int dim>
+void
+StructureSystem<dim>::assemble_forces(const double time)
+{
+  for_each_surface([&](auto &body, const unsigned int) { body.assemble_forces(time); });
+}
+
+template <int dim>
+void
+StructureSystem<dim>::predict_velocities(const double dt)
+{
+  for_each_surface([&](auto &body, const unsigned int) { body.predict_velocities(dt); });
+}
+
+template <int dim>
+void
+StructureSystem<dim>::move(const double dt)
+{
+  for_each_surface([&](auto &body, const unsigned int) { body.move(dt); });
+}
+
+template <int dim>
+void
+StructureSystem<dim>::update_stresses(const double dt)
+{
+  for_each_surface([&](auto &body, const unsigned int) {
+    try
+      {
+        body.update_stress(dt);
+      }
+    catch (const RunFailure &bad)
+      {
+        if (!failure)
+          failure.emplace(bad);
+      }
+  });
+}
+
+template <int dim>
+const contact::Surface<dim> &
+StructureSystem<dim>::publish_surface()
+{
+  for_each_surface([&](auto &body, const unsigned int index) {
+    auto node = surface.nodes.begin() + first_node[index];
+    for (const unsigned int local : body.surface_nodes())
+      {
+        node->position     = body.position(local);
+        node->velocity     = body.velocity(local);
+        node->inverse_mass = body.inverse_mass(local);
+        ++node;
+      }
+  });
+  return surface;
+}
+
+template <int dim>
+std::vector<contact::RigidUnknown<dim>>
+StructureSystem<dim>::rigid_unknowns() const
+{
+  std::vector<contact::RigidUnknown<dim>> result;
+  for (const auto &body : rigids)
+    result.push_back({body.centre(),
+                      body.centre_velocity(),
+                      body.spin(),
+                      body.body_inverse_mass(),
+                      body.inverse_inertia()});
+  return result;
+}
+
+template <int dim>
+void
+StructureSystem<dim>::apply_contact(
+  const std::vector<dealii::Tensor<1, dim>>                             &impulse,
+  const std::vector<dealii::Tensor<1, dim>>                             &correction,
+  const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid)
+{
+  for_each_surface([&](auto &body, const unsigned int index) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>)
+      {
+        // The same on all ranks, so that one of them tells the body.
+        const auto &sums = rigid[surface.bodies[index].rigid_body];
+        if (mpi::rank(comm) == 0)
+          {
+            received[index] += sums.impulse;
+            body.add_contact_impulse(sums.impulse, sums.moment);
+            body.add_correction(sums.correction, sums.correction_moment);
+          }
+      }
+    else
+      {
+        unsigned int i = first_node[index];
+        for (const unsigned int local : body.surface_nodes())
+          {
+            received[index] += impulse[i];
+            body.add_contact_impulse(local, impulse[i]);
+            body.add_correction(local, correction[i]);
+            ++i;
+          }
+      }
+    body.apply_contact_impulses();
+    body.apply_corrections();
+  });
+}
+
+template class StructureSystem<2>;
+template class StructureSystem<3>;
+} // namespace coracle

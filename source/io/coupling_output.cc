@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/io/coupling_output.h>
+
+namespace coracle
+{
+namespace
+{
+template <int dim>
+using Layout = ParticleLayout<dim>;
+
+/// n neighbouring columns as one field.
+Field
+columns_field(const std::string &name,
+              const std::string &unit,
+              const Columns     &columns,
+              const unsigned int first,
+              const unsigned int n)
+{
+  Field field{name, unit, {}, 1, false};
+  for (unsigned int i = 0; i < n; ++i)
+    field.components.push_back(columns[first + i]);
+  return field;
+}
+
+// Particles without holes: copies are made only if there are any.
+template <int dim>
+std::vector<unsigned int>
+rows_present(const MaterialPoints<dim> &points)
+{
+  std::vector<unsigned int> rows;
+  rows.reserve(points.n_particles());
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    if (!points.is_hole(row))
+      rows.push_back(row);
+  return rows;
+}
+
+template <int dim>
+NodeView
+node_view(const StructuralBody<dim> &body, std::vector<std::uint64_t> &keys)
+{
+  using Node = NodeColumns<dim>;
+  NodeView view;
+  view.n_nodes   = body.mesh().n_owned_nodes();
+  view.reference = columns_field("reference", "m", body.nodes(), Node::reference, dim);
+  view.current   = columns_field("position", "m", body.nodes(), Node::position, dim);
+  view.velocity  = columns_field("velocity", "m/s", body.nodes(), Node::velocity, dim);
+  keys.clear();
+  for (unsigned int node = 0; node < view.n_nodes; ++node)
+    keys.push_back(body.key(node));
+  view.keys = keys.data();
+  return view;
+}
+
+template <int dim, typename Action>
+void
+for_each_structure(StructureSystem<dim> &structure, const Action &action)
+{
+  for (auto &body : structure.solids)
+    action(body);
+  for (auto &body : structure.rigids)
+    action(body);
+}
+
+template <int dim>
+const StructuralBody<dim> *
+find_structure(StructureSystem<dim> &structure, const std::string &name)
+{
+  const StructuralBody<dim> *result = nullptr;
+  for_each_structure(structure, [&](const StructuralBody<dim> &body) {
+    if (body.name() == name)
+      result = &body;
+  });
+  return result;
+}
+} // namespace
+
+template <int dim>
+CouplingOutput<dim>::CouplingOutput(const Parameters     &root,
+                                    const OutputSettings &settings,
+                                    OutputDirectory      &directory,
+                                    Coupling<dim>        &coupling)
+  : settings(settings)
+  , comm(directory.communicator())
+  , statistics(directory.file("statistics.csv"), directory.communicator())
+{
+  std::vector<std::string> names;
+  for_each_structure(coupling.structure, [&](const StructuralBody<dim> &body) {
+    names.push_back(body.name());
+    if (settings.structures)
+      structures.emplace_back(directory, body.name());
+  });
+  for (const auto &body : coupling.points.bodies)
+    {
+      names.push_back(body.name());
+      particles.emplace_back(directory, body.name(), settings.particles);
+    }
+  if (settings.octree)
+    octree = std::make_unique<MeshOutput>(directory, "octree");
+  add_standard_columns<dim>(statistics, names);
+  statistics.add_column("contact.iterations", "");
+  statistics.add_column("contact.residual", "m/s");
+  statistics.add_column("contact.worst_violation", "m/s");
+  make_probes(root, coupling);
+  reported_momentum.resize(names.size());
+  reported_force.resize(names.size());
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::make_probes(const Parameters &root, Coupling<dim> &coupling)
+{
+  std::vector<std::string> structure_names, particle_names;
+  for_each_structure(coupling.structure, [&](const StructuralBody<dim> &body) {
+    structure_names.push_back(body.name());
+  });
+  for (const auto &body : coupling.points.bodies)
+    particle_names.push_back(body.name());
+  std::vector<std::uint64_t> keys;
+  for (const auto &description :
+       ProbeDescription<dim>::read(root.section("Probes"), structure_names, particle_names))
+    if (description.kind == ProbeKind::body_point)
+      {
+        const auto *const body = find_structure(coupling.structure, description.body);
+        body_probes.emplace_back(description.body,
+                                 BodyPointProbe<dim>(description, node_view(*body, keys), comm));
+        BodyPointProbe<dim>::add_columns(description, statistics);
+      }
+    else
+      {
+        point_probes.emplace_back(description.body, PointProbe<dim>(description, comm));
+        PointProbe<dim>::add_columns(description, statistics);
+      }
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::write(Coupling<dim> &coupling)
+{
+  unsigned int i = 0;
+  for (auto &body : coupling.points.bodies)
+    write_particles(body, particles[i++], coupling.time());
+  if (settings.structures)
+    {
+      i = 0;
+      for (const auto &body : coupling.structure.solids)
+        {
+          std::vector<Symmetric<dim, double>> stress;
+          for (unsigned int e = 0; e < body.mesh().n_elements(); ++e)
+            stress.push_back(body.stress(e));
+          write_structure(body, &stress, structures[i++], coupling.time());
+        }
+      for (const auto &body : coupling.structure.rigids)
+        write_structure(body, nullptr, structures[i++], coupling.time());
+    }
+  if (octree)
+    write_octree(coupling);
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::write_particles(const MaterialPointBody<dim> &body,
+                                     ParticleOutput               &output,
+                                     const double                  time)
+{
+  const auto        &points   = body.points;
+  const auto         rows     = rows_present(points);
+  const unsigned int n_stress = points.layout().n_stress;
+  const unsigned int first[]  = {Layout<dim>::position,
+                                 Layout<dim>::velocity,
+                                 static_cast<unsigned int>(Layout<dim>::stress),
+                                 Layout<dim>::density,
+                                 Layout<dim>::id};
+  const unsigned int width[]  = {dim, dim, n_stress, 1, 1};
+  const char *const  name[]   = {
+       "position", "velocity", n_stress == 1 ? "pressure" : "stress", "density", "id"};
+  const char *const                unit[] = {"m", "m/s", "Pa", "kg/m^3", "1"};
+  std::vector<std::vector<double>> copies;
+  std::vector<Field>               fields;
+  for (unsigned int f = 0; f < 5; ++f)
+    {
+      Field field{name[f], unit[f], {}, 1, f == 4};
+      for (unsigned int c = 0; c < width[f]; ++c)
+        {
+          const double *column = points.column(first[f] + c);
+          if (rows.size() < points.n_rows())
+            {
+              copies.emplace_back(rows.size() + 1);
+              for (std::size_t i = 0; i < rows.size(); ++i)
+                copies.back()[i] = column[rows[i]];
+              column = copies.back().data();
+            }
+          field.components.push_back(column);
+        }
+      fields.push_back(field);
+    }
+  std::vector<double> pressure;
+  if (n_stress > 1)
+    {
+      for (const unsigned int row : rows)
+        pressure.push_back(-(points.column(Layout<dim>::stress)[row] +
+                             points.column(Layout<dim>::stress + 1)[row] +
+                             points.column(Layout<dim>::stress + 2)[row]) /
+                           3.);
+      fields.push_back(scalar_field("pressure", "Pa", pressure));
+    }
+  output.write(time, rows.size(), fields);
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::write_structure(const StructuralBody<dim>                 &body,
+                                     const std::vector<Symmetric<dim, double>> *stress,
+                                     MeshOutput                                &output,
+                                     const double                               time)
+{
+  using Node = NodeColumns<dim>;
+  MeshView view;
+  view.shape    = cell_shape<dim>;
+  view.position = columns_field("position", "m", body.nodes(), Node::position, dim);
+  view.n_cells  = body.mesh().n_elements();
+  view.cells    = view.n_cells > 0 ? body.mesh().elements[0].data() : nullptr;
+  std::vector<dealii::Tensor<1, dim>> displacement(body.mesh().n_nodes());
+  for (unsigned int node = 0; node < displacement.size(); ++node)
+    displacement[node] = body.displacement(node);
+  std::vector<Field> cell_fields;
+  if (stress != nullptr)
+    {
+      Field field{"stress", "Pa", {}, Symmetric<dim, double>::size, false};
+      for (int k = 0; k < Symmetric<dim, double>::size; ++k)
+        field.components.push_back(stress->empty() ? nullptr : &stress->front().s[k]);
+      cell_fields.push_back(field);
+    }
+  output.write(time,
+               view,
+               {vector_field("displacement", "m", displacement),
+                columns_field("velocity", "m/s", body.nodes(), Node::velocity, dim),
+                columns_field("contact_force", "N", body.nodes(), Node::contact_force, dim)},
+               cell_fields);
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::write_octree(const Coupling<dim> &coupling)
+{
+  const auto &tree = coupling.points.octree;
+  MeshView    view;
+  view.shape = cell_shape<dim>;
+  std::vector<dealii::Point<dim>> positions(tree.n_nodes());
+  for (unsigned int node = 0; node < tree.n_nodes(); ++node)
+    positions[node] = tree.position(node);
+  view.position = vector_field("position", "m", positions);
+  view.n_cells  = tree.n_owned_leaves();
+  view.cells    = view.n_cells > 0 ? tree.nodes(0).data() : nullptr;
+  std::vector<double> size(view.n_cells), rank(view.n_cells, mpi::rank(comm)),
+    n_particles(view.n_cells, 0.);
+  for (unsigned int leaf = 0; leaf < view.n_cells; ++leaf)
+    size[leaf] = tree.size(leaf);
+  for (const auto &body : coupling.points.bodies)
+    for (std::size_t row = 0; row < body.points.n_rows(); ++row)
+      if (!body.points.is_hole(row))
+        n_particles[tree.find(body.points.position(row))] += 1.;
+  octree->write(coupling.time(),
+                view,
+                {},
+                {scalar_field("cell_size", "m", size),
+                 scalar_field("rank", "1", rank),
+                 scalar_field("particles", "1", n_particles)});
+}
+
+template <int dim>
+EnergyBooks
+CouplingOutput<dim>::energies(const Coupling<dim> &coupling)
+{
+  const auto    &books = coupling.points.books();
+  const MPI_Comm comm  = coupling.points.octree.triangulation.get_communicator();
+  EnergyBooks    result;
+  result.kinetic       = mpi::sum(books.kinetic, comm);
+  result.internal      = mpi::sum(books.internal, comm);
+  result.damping       = mpi::sum(books.damping, comm);
+  result.contact       = -mpi::sum(books.contact, comm);
+  result.transfer      = mpi::sum(books.transfer, comm);
+  result.boundary      = mpi::sum(books.boundary, comm);
+  result.external_work = mpi::sum(books.external_work, comm);
+  const auto add       = [&result](const auto &body) {
+    const auto e = body.energies();
+    result.kinetic += e.kinetic;
+    result.strain += e.strain;
+    result.hourglass += e.hourglass;
+    result.damping += e.damping;
+    result.contact -= e.contact_work;
+    result.external_work += e.external_work;
+  };
+  for (const auto &body : coupling.structure.solids)
+    add(body);
+  for (const auto &body : coupling.structure.rigids)
+    add(body);
+  return result;
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::add_bodies(Report<dim> &report, Coupling<dim> &coupling)
+{
+  std::vector<dealii::Tensor<1, dim>> momentum = coupling.structure.contact_momentum();
+  for_each_structure(coupling.structure, [&](const auto &body) {
+    const auto summary = body.summary();
+    report.bodies.push_back({body.name(), summary.mass, summary.centre, summary.velocity, {}});
+  });
+  const auto  &given = coupling.contacts.contact_momentum();
+  unsigned int s     = 0;
+  for (const auto &body : coupling.points.bodies)
+    {
+      std::array<double, 1 + 2 * dim> sums{};
+      const auto                     &points = body.points;
+      for (std::size_t row = 0; row < points.n_rows(); ++row)
+        {
+          const double m = points.column(Layout<dim>::mass)[row];
+          sums[0] += m;
+          for (int d = 0; d < dim; ++d)
+            {
+              sums[1 + d] += m * points.column(Layout<dim>::position + d)[row];
+              sums[1 + dim + d] += m * points.column(Layout<dim>::velocity + d)[row];
+            }
+        }
+      dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums.data(), sums.size()),
+                                  comm,
+                                  dealii::ArrayView<double>(sums.data(), sums.size()));
+      BodyReport<dim> entry{body.name(), sums[0], {}, {}, {}};
+      for (int d = 0; d < dim && sums[0] > 0; ++d)
+        {
+          entry.centre[d]   = sums[1 + d] / sums[0];
+          entry.velocity[d] = sums[1 + dim + d] / sums[0];
+        }
+      report.bodies.push_back(entry);
+      momentum.push_back(s < given.size() ? given[s] : dealii::Tensor<1, dim>());
+      ++s;
+    }
+  const double interval = report.time - reported_time;
+  for (unsigned int b = 0; b < report.bodies.size(); ++b)
+    {
+      auto &body = report.bodies[b];
+      report.momentum += body.mass * body.velocity;
+      const auto total = mpi::sum(momentum[b], comm);
+      if (interval > 0)
+        reported_force[b] = (total - reported_momentum[b]) / interval;
+      reported_momentum[b] = total;
+      body.contact_force   = reported_force[b];
+    }
+  reported_time = report.time;
+}
+
+template <int dim>
+Report<dim>
+CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
+{
+  Report<dim> report;
+  report.time                      = coupling.time();
+  report.step                      = coupling.step();
+  report.dt                        = coupling.last_step();
+  report.penetrations              = coupling.contacts.n_penetrations();
+  report.contacts                  = coupling.contacts.report().n_contacts;
+  report.worst_gap                 = coupling.worst_gap;
+  report.contact_steps             = coupling.contact_steps;
+  report.unconverged_contact_steps = coupling.unconverged_contact_steps;
+  report.particles                 = mpi::sum(coupling.points.n_particles(), comm);
+  report.particle_steps            = mpi::sum(coupling.particle_steps, comm);
+  for (const auto &body : coupling.points.bodies)
+    {
+      report.particles_created += mpi::sum(body.points.ledger.created, comm);
+      report.particles_removed += mpi::sum(body.points.ledger.removed, comm);
+      report.particles_converted += mpi::sum(body.points.ledger.converted, comm);
+    }
+  report.energies = energies(coupling);
+  if (first_report)
+    balance.start(report.energies);
+  first_report                = false;
+  report.energy_balance_error = balance.error(report.energies);
+  add_bodies(report, coupling);
+  coupling.worst_gap = 0;
+  return report;
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &coupling)
+{
+  statistics.begin_row();
+  set_standard_columns(statistics, report);
+  const auto &solver = coupling.contacts.report().solver;
+  statistics.set("contact.iterations", solver.velocity.iterations);
+  statistics.set("contact.residual", solver.velocity.residual);
+  statistics.set("contact.worst_violation", solver.worst_violation);
+  std::vector<std::uint64_t> keys;
+  for (const auto &[body, probe] : body_probes)
+    probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);
+  for (const auto &[name, probe] : point_probes)
+    for (const auto &body : coupling.points.bodies)
+      if (body.name() == name)
+        {
+          const auto         &points = body.points;
+          std::vector<double> pressure;
+          ParticleView        view;
+          view.n_particles = points.n_rows();
+          view.position =
+            columns_field("position", "m", points.columns, Layout<dim>::position, dim);
+          view.velocity =
+            columns_field("velocity", "m/s", points.columns, Layout<dim>::velocity, dim);
+          view.mass     = points.column(Layout<dim>::mass);
+          view.pressure = points.column(Layout<dim>::stress);
+          if (points.layout().n_stress > 1)
+            {
+              for (std::size_t row = 0; row < points.n_rows(); ++row)
+                pressure.push_back(-(points.column(Layout<dim>::stress)[row] +
+                                     points.column(Layout<dim>::stress + 1)[row] +
+                                     points.column(Layout<dim>::stress + 2)[row]) /
+                                   3.);
+              view.pressure = pressure.data();
+            }
+          probe.set_columns(view, statistics);
+        }
+  statistics.end_row();
+}
+
+template class CouplingOutput<2>;
+template class CouplingOutput<3>;
+} // namespace coracle

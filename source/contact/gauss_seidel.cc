@@ -9,6 +9,9 @@ namespace coracle::contact
 {
 namespace
 {
+/// Sweeps that settle which contacts are closed before the face solver goes on from there.
+constexpr unsigned int sweeps_per_face = 2;
+
 /// The next impulse of one contact, everything else held fixed.
 template <int dim>
 dealii::Tensor<1, dim>
@@ -37,7 +40,7 @@ project(const typename Delassus<dim>::Row &row,
 
 template <int dim>
 GaussSeidel<dim>::GaussSeidel(MPI_Comm communicator, const bool accelerate)
-  : communicator(communicator), accelerate(accelerate)
+  : communicator(communicator), accelerate(accelerate), face_solver(communicator)
 {}
 
 template <int dim>
@@ -91,34 +94,6 @@ GaussSeidel<dim>::residual(const Delassus<dim>       &delassus,
 }
 
 template <int dim>
-void
-GaussSeidel<dim>::extrapolate(const double beta, std::vector<Vector> &impulses, Velocities<dim> &v)
-{
-  for (std::size_t c = 0; c < impulses.size(); ++c)
-    {
-      impulses[c] += beta * direction[c];
-      direction[c] = beta * direction[c] + step[c];
-    }
-  // `before` still holds the velocities before the sweep.
-  for (std::size_t i = 0; i < v.nodes.size(); ++i)
-    before.nodes[i] = v.nodes[i] - before.nodes[i];
-  for (std::size_t i = 0; i < v.nodes.size(); ++i)
-    {
-      v.nodes[i] += beta * velocity_direction.nodes[i];
-      velocity_direction.nodes[i] = beta * velocity_direction.nodes[i] + before.nodes[i];
-    }
-  for (std::size_t b = 0; b < v.rigid.size(); ++b)
-    {
-      const Vector               change      = v.rigid[b] - before.rigid[b];
-      const dealii::Tensor<1, 3> spin_change = v.spin[b] - before.spin[b];
-      v.rigid[b] += beta * velocity_direction.rigid[b];
-      v.spin[b] += beta * velocity_direction.spin[b];
-      velocity_direction.rigid[b] = beta * velocity_direction.rigid[b] + change;
-      velocity_direction.spin[b]  = beta * velocity_direction.spin[b] + spin_change;
-    }
-}
-
-template <int dim>
 IterationReport
 GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
                         const std::vector<double> &target,
@@ -129,8 +104,8 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
 {
   const auto &rows = delassus.rows();
   step.resize(rows.size());
-  direction.assign(rows.size(), Vector());
-  delassus.set_zero(velocity_direction);
+  if (accelerate)
+    face_solver.reinit(delassus, v);
 
   // Velocities with the impulses to start from.
   before        = v;
@@ -151,7 +126,7 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
   };
   if (finished())
     return report;
-  for (double old_square = 0;;)
+  for (;;)
     {
       before    = v;
       Size size = sweep(delassus, target, friction, impulses, v);
@@ -162,9 +137,8 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
       if ((size.largest <= limits.tolerance || report.iterations >= limits.iterations) &&
           finished())
         return report;
-      if (accelerate)
-        extrapolate(size.square < old_square ? size.square / old_square : 0., impulses, v);
-      old_square = size.square;
+      if (accelerate && report.iterations % sweeps_per_face == 0)
+        report.face_steps += face_solver.improve(delassus, target, friction, impulses, v);
     }
 }
 

@@ -11,6 +11,8 @@ namespace
 /// Places nearer to each other than this, in facet sizes, are one contact that round-off has
 /// doubled.
 constexpr double same_place = 1e-8;
+/// Nearer to an edge or vertex than this, in facet sizes, the offset has no reliable direction.
+constexpr double on_surface = 1e-7;
 } // namespace
 
 template <int dim>
@@ -255,8 +257,7 @@ LocalSearch<dim>::contacts_of_body(const PointSet<dim>       &points,
       // Inside a facet the pseudonormal is the more accurate; on the surface there is nothing else.
       const auto   offset = x_p - pair.nearest.place;
       const double length = offset.norm();
-      const bool   on_rim = minimum.pseudonormal.rim && length > 0;
-      if (pair.nearest.region == Region::interior || (minimum.side == 0 && !on_rim))
+      if (pair.nearest.region == Region::interior || length < on_surface * balls[pair.facet].radius)
         contact.normal =
           (own != 0 ? own : (minimum.side < 0 ? -1 : 1)) * minimum.pseudonormal.normal;
       else

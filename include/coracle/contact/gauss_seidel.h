@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/contact/delassus.h>
+#include <coracle/contact/face_solver.h>
 
 namespace coracle::contact
 {
@@ -17,6 +17,8 @@ struct IterationLimits
 struct IterationReport
 {
   unsigned int iterations = 0;
+  /// Steps of the face solver between the iterations; each costs about as much.
+  unsigned int face_steps = 0;
   /// Largest complementarity residual, as a velocity [m/s].
   double residual  = 0;
   bool   converged = true;
@@ -29,12 +31,8 @@ struct IterationReport
  * with u = J (v + M^-1 J^T P), by projected Gauss-Seidel on accumulated impulses
  * P: an increment may be negative, the sum may not.
  *
- * Particles that share grid nodes make nearly dependent rows on which plain
- * sweeps creep. So a sweep serves as the search direction of a nonlinear
- * conjugate gradient method, restarted whenever its steps grow
- * (Silcowitz-Hansen, Niebe & Erleben, A nonsmooth nonlinear conjugate gradient
- * method for interactive contact force problems, 2010); the last step before
- * the end is always a plain sweep, so that P is admissible.
+ * Between sweeps the FaceSolver accelerates; the last thing before the end is
+ * always a sweep, so that P is admissible.
  */
 template <int dim>
 class GaussSeidel
@@ -79,12 +77,10 @@ private:
                   const std::vector<Vector> &impulses,
                   const Velocities<dim>     &v) const;
 
-  /// impulses += beta * direction, direction = beta * direction + step, velocities likewise.
-  void extrapolate(const double beta, std::vector<Vector> &impulses, Velocities<dim> &v);
-
   MPI_Comm            communicator;
   bool                accelerate;
-  std::vector<Vector> step, direction;
-  Velocities<dim>     before, velocity_direction;
+  FaceSolver<dim>     face_solver;
+  std::vector<Vector> step;
+  Velocities<dim>     before;
 };
 } // namespace coracle::contact

@@ -193,7 +193,8 @@ PointProbe<dim>::set_columns(const ParticleView &particles, Statistics &statisti
   // Number, mass, mass times pressure, momentum.
   std::array<double, 3 + dim> local{}, sums;
   for (std::size_t i = 0; i < particles.n_particles; ++i)
-    if (description.position.distance(entry<dim>(particles.position, i)) <= description.radius)
+    if (particles.mass[i] > 0 &&
+        description.position.distance(entry<dim>(particles.position, i)) <= description.radius)
       {
         const double mass     = particles.mass[i];
         const auto   velocity = entry<dim>(particles.velocity, i);

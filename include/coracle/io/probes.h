@@ -88,7 +88,7 @@ private:
   std::int64_t local_node = -1;
 };
 
-/// The particles of one body on this rank.
+/// The particles of one body on this rank; rows without mass are holes and do not count.
 struct ParticleView
 {
   std::size_t   n_particles = 0;

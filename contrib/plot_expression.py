@@ -21,7 +21,7 @@ OPERATORS = {
     ast.UAdd: operator.pos,
 }
 FUNCTIONS = {
-    name: getattr(np, name) for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "abs", "where")
+    name: getattr(np, name) for name in ("sqrt", "exp", "log", "sin", "cos", "tan", "abs")
 }
 FUNCTIONS.update(min=np.minimum, max=np.maximum)
 

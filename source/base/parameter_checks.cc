@@ -25,12 +25,21 @@ with_unit(const double value, const std::string &unit)
   return number(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
 }
 
+/// A tiny least value only keeps zero out.
+bool
+means_positive(const EntryDeclaration &entry)
+{
+  return entry.kind == EntryKind::quantity && entry.minimum > 0 && entry.minimum <= 1e-9;
+}
+
 std::string
 describe_range(const EntryDeclaration &entry)
 {
   constexpr double unlimited = std::numeric_limits<int>::max();
   std::string      result;
-  if (entry.minimum > -std::numeric_limits<double>::max())
+  if (means_positive(entry))
+    result += ", positive";
+  else if (entry.minimum > -std::numeric_limits<double>::max())
     result += ", at least " + with_unit(entry.minimum, entry.unit);
   if (entry.kind == EntryKind::integer ? entry.maximum < unlimited
                                        : entry.maximum < std::numeric_limits<double>::max())
@@ -41,6 +50,8 @@ describe_range(const EntryDeclaration &entry)
 void
 check_range(const EntryDeclaration &entry, const double value, const std::string &text)
 {
+  if (value < entry.minimum && means_positive(entry))
+    throw ValueError{"'" + text + "' is not positive", "give " + describe_values(entry)};
   if (value < entry.minimum)
     throw ValueError{"'" + text + "' is below the least allowed value, " +
                        with_unit(entry.minimum, entry.unit),

@@ -61,6 +61,8 @@ Declaration::Data::add_section(const std::string &name,
   for (auto &other : section->sections)
     if (other->name == name && same(other->conditions, conditions))
       return *other;
+  AssertThrow(name.find_first_of("/=#") == std::string::npos && !meaning.empty(),
+              dealii::ExcMessage("Bad declaration of the section " + name));
   section->sections.push_back(std::make_unique<SectionDeclaration>());
   SectionDeclaration &added = *section->sections.back();
   added.name                = name;

@@ -28,6 +28,13 @@ assignment(const std::string &name, const std::string &value)
   return "set " + name + (value.empty() ? " =" : " = " + value);
 }
 
+/// With a full stop, whether the declaration has it or not.
+std::string
+sentence(const std::string &text)
+{
+  return text.back() == '.' ? text : text + ".";
+}
+
 /// The file as used.
 class UsedPrinter
 {
@@ -90,7 +97,7 @@ private:
   {
     const bool active = indent.substr(0, 1) == "#" || applies(section, entry.conditions);
     separate();
-    out << indent << "# " << entry.meaning << " (" << internal::describe_values(entry)
+    out << indent << "# " << sentence(entry.meaning) << " (" << internal::describe_values(entry)
         << (entry.symbol.empty() ? "" : "; symbol " + entry.symbol) << ')' << '\n';
     if (!entry.conditions.empty())
       out << indent << "# Only where " << describe(entry.conditions) << ".\n";
@@ -109,7 +116,7 @@ private:
     const std::string below  = applies(parent, section.conditions) ? mark : "# ";
     const std::string indent = below + std::string(2 * level, ' ');
     separate();
-    out << mark << std::string(2 * level, ' ') << "# " << section.meaning << '\n';
+    out << mark << std::string(2 * level, ' ') << "# " << sentence(section.meaning) << '\n';
     if (!section.conditions.empty())
       out << indent << "# Only where " << describe(section.conditions) << ".\n";
     out << indent << "subsection " << section.name << '\n';
@@ -180,7 +187,7 @@ private:
       out << "| `" << entry.name << "` | "
           << (entry.default_value.empty() ? "" : "`" + cell(entry.default_value) + "`") << " | "
           << cell(internal::describe_values(entry)) << " | " << cell(entry.symbol) << " | "
-          << cell(entry.meaning)
+          << cell(sentence(entry.meaning))
           << (entry.conditions.empty() ? "" : " *Where " + describe(entry.conditions) + ".*")
           << " |\n";
     for (const auto &subsection : section.sections)
@@ -188,7 +195,7 @@ private:
         const std::string name  = subsection->item.empty() ? "" : "/<" + subsection->item + ">";
         const std::string below = internal::join_path(path, subsection->name + name);
         out << "\n## `" << below << "`\n\n"
-            << subsection->meaning
+            << sentence(subsection->meaning)
             << (subsection->conditions.empty()
                   ? ""
                   : " *Where " + describe(subsection->conditions) + ".*")

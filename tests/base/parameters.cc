@@ -25,7 +25,7 @@ declare(Declaration &root)
   points.when("Material", "water").quantity("Density", "1000", "kg/m^3", "rho", "At rest.");
   points.when("Material", "gas").quantity("Density", "1.2", "kg/m^3", "rho", "At rest.");
   points.section("Splitting", "Of particles.").flag("Active", false, "Split where cells refine.");
-  bodies.when("Kind", "rigid").quantity("Mass", "", "kg", "M", "Of the whole body.");
+  bodies.when("Kind", "rigid").quantity("Mass", "", "kg", "M", "Of the whole body", 1e-12);
   bodies.when("Kind", "rigid").file("Mesh", "Its surface.");
   bodies.function("Force", "", "N", "On its centre.");
   Declaration &output = root.section("Output", "What is written.");
@@ -78,6 +78,7 @@ test_refused()
   refused("set End time = soon");
   refused("set End time = -1 ms");
   refused("set End time =");
+  refused(body + "set Mass = 0 kg\nend\nend");
   refused("set Dimension = 4");
   refused("set Dimension = 2.5");
   refused("subsection Output\n set Overwrite = maybe\nend");

@@ -6,12 +6,6 @@
 
 namespace coracle::contact
 {
-namespace
-{
-/// Depth that the position solve may leave, relative to the contact distance.
-constexpr double position_tolerance = 1e-3;
-} // namespace
-
 template <int dim>
 Solver<dim>::Solver(const ContactOptions &options, MPI_Comm communicator)
   : options(options)
@@ -102,7 +96,7 @@ template <int dim>
 void
 Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const double dt)
 {
-  // In terms of a displacement per dt, so that the rows serve as they are.
+  // In terms of a displacement per dt, so that the rows serve as they are; tolerance relative to R.
   double deepest = 0, largest_distance = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
@@ -115,7 +109,7 @@ Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const do
     }
   double both[2] = {deepest, largest_distance};
   MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_DOUBLE, MPI_MAX, communicator);
-  const double tolerance = position_tolerance * both[1] / dt;
+  const double tolerance = options.tolerance * both[1] / dt;
   if (both[0] <= tolerance)
     return;
   delassus.set_zero(displacement_rate);

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The contact solver finds the solution that trying all active sets finds, on 1,
+// 2 or 3 ranks (one of them without contacts) alike; friction slides a block with
+// exactly mu g and holds it below; momentum and angular momentum are conserved to
+// round-off, also with a rigid body.
+
+#include <Eigen/Dense>
+
+#include "scene.h"
+
+using namespace scene;
+
+/// Random contacts between points in one or two cells and a light plate.
+template <int dim>
+struct Problem
+{
+  std::vector<Unknown<dim>>                 unknowns;
+  std::vector<Contact<dim>>                 contacts;
+  std::vector<RigidUnknown<dim>>            rigid;
+  Rows                                      rows;
+  std::vector<typename WarmStart<dim>::Key> keys;
+
+  Problem(const unsigned int n_contacts,
+          const unsigned int seed,
+          const double       friction,
+          const bool         with_rigid)
+  {
+    std::mt19937                     generator(seed);
+    std::uniform_real_distribution<> uniform(0, 1);
+    const unsigned int               n_unknowns = 12;
+    for (unsigned int i = 0; i < n_unknowns; ++i)
+      {
+        Unknown<dim> u;
+        for (int d = 0; d < dim; ++d)
+          {
+            u.velocity[d]     = uniform(generator) - 0.5;
+            u.inverse_mass[d] = 0.5 + uniform(generator);
+          }
+        u.velocity[dim - 1] -= (i < 8 ? 1. : -1.);
+        if (i == 3)
+          u.inverse_mass[0] = 0; // a wall
+        u.key   = 77 * i;
+        u.owner = i % dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+        unknowns.push_back(u);
+      }
+    RigidUnknown<dim> body;
+    body.velocity[0] = 0.3;
+    body.spin[2]     = 0.7;
+    for (int d = 0; d < dim; ++d)
+      body.inverse_mass[d] = 0.2;
+    for (unsigned int d = 0; d < 3; ++d)
+      body.inverse_inertia[d][d] = 0.4 + 0.1 * d;
+    if (with_rigid)
+      rigid.push_back(body);
+
+    for (unsigned int c = 0; c < n_contacts; ++c)
+      {
+        double sum = 0;
+        for (unsigned int side = 0; side < 2; ++side)
+          {
+            const bool on_body = (side == 1 && with_rigid && c % 2 == 0);
+            for (unsigned int k = 0; k < 4 && !on_body; ++k)
+              {
+                const double w = (k == 3 ? 1 - sum : (1 - sum) * uniform(generator));
+                sum            = (k == 3 ? 0. : sum + w);
+                rows.entries.push_back({8 * side + (side == 0 ? k + 4 * (c % 2) : k), w});
+              }
+            rows.begin.push_back(rows.entries.size());
+            if (side == 1)
+              rows.rigid_body.push_back(on_body ? 0 : -1);
+          }
+        Contact<dim> contact{};
+        contact.set   = 0;
+        contact.point = c;
+        for (int d = 0; d < dim; ++d)
+          contact.normal[d] = uniform(generator) - 0.5;
+        contact.normal[dim - 1] += 1;
+        contact.normal /= contact.normal.norm();
+        for (int d = 0; d < dim; ++d)
+          contact.place[d] = uniform(generator);
+        contact.gap      = (c % 3 == 0 ? 0.012 : 0.009);
+        contact.distance = 0.01;
+        contact.friction = friction;
+        contacts.push_back(contact);
+        keys.push_back({c, 0});
+      }
+  }
+
+  double target(const unsigned int c, const double dt) const
+  {
+    return -std::max(0., contacts[c].gap - contacts[c].distance) / dt;
+  }
+
+  /// The contacts of one rank; the unknowns only as far as they are used there.
+  Problem part(const unsigned int rank, const unsigned int n_ranks) const
+  {
+    Problem result(0, 0, 0, false);
+    result.unknowns.clear();
+    result.rigid = rigid;
+    std::map<unsigned int, unsigned int> number;
+    for (unsigned int c = 0; c < contacts.size(); ++c)
+      if (c % 2 == (rank < 2 ? rank : 5) || n_ranks == 1)
+        {
+          for (unsigned int side = 0; side < 2; ++side)
+            {
+              for (std::size_t e = rows.begin[2 * c + side]; e < rows.begin[2 * c + side + 1]; ++e)
+                {
+                  const auto entry =
+                    number.emplace(rows.entries[e].unknown, result.unknowns.size());
+                  if (entry.second)
+                    result.unknowns.push_back(unknowns[rows.entries[e].unknown]);
+                  result.rows.entries.push_back({entry.first->second, rows.entries[e].weight});
+                }
+              result.rows.begin.push_back(result.rows.entries.size());
+            }
+          result.rows.rigid_body.push_back(rows.rigid_body[c]);
+          result.contacts.push_back(contacts[c]);
+          result.keys.push_back(keys[c]);
+        }
+    return result;
+  }
+};
+
+/// All active sets, without friction: velocities of the unknowns in the solution.
+std::vector<dealii::Tensor<1, 2>>
+try_all(const Problem<2> &problem, const double dt)
+{
+  const unsigned int n = problem.contacts.size(), m = 2 * problem.unknowns.size();
+  Eigen::MatrixXd    J = Eigen::MatrixXd::Zero(n, m);
+  Eigen::VectorXd    v(m), w(m), target(n);
+  for (unsigned int i = 0; i < m; ++i)
+    {
+      v(i) = problem.unknowns[i / 2].velocity[i % 2];
+      w(i) = problem.unknowns[i / 2].inverse_mass[i % 2];
+    }
+  for (unsigned int c = 0; c < n; ++c)
+    {
+      target(c) = problem.target(c, dt);
+      for (unsigned int side = 0; side < 2; ++side)
+        for (std::size_t e = problem.rows.begin[2 * c + side];
+             e < problem.rows.begin[2 * c + side + 1];
+             ++e)
+          for (unsigned int d = 0; d < 2; ++d)
+            J(c, 2 * problem.rows.entries[e].unknown + d) +=
+              (side == 0 ? 1 : -1) * problem.rows.entries[e].weight * problem.contacts[c].normal[d];
+    }
+  const Eigen::MatrixXd             A = J * w.asDiagonal() * J.transpose();
+  std::vector<dealii::Tensor<1, 2>> result(problem.unknowns.size());
+  for (unsigned int set = 0; set < (1u << n); ++set)
+    {
+      std::vector<int> active;
+      for (unsigned int c = 0; c < n; ++c)
+        if (set & (1u << c))
+          active.push_back(c);
+      const Eigen::VectorXd missing = target - J * v;
+      Eigen::VectorXd       lambda  = Eigen::VectorXd::Zero(n);
+      if (!active.empty())
+        {
+          Eigen::MatrixXd a(active.size(), active.size());
+          Eigen::VectorXd b(active.size());
+          for (unsigned int i = 0; i < active.size(); ++i)
+            {
+              b(i) = missing(active[i]);
+              for (unsigned int j = 0; j < active.size(); ++j)
+                a(i, j) = A(active[i], active[j]);
+            }
+          const Eigen::VectorXd x = a.completeOrthogonalDecomposition().solve(b);
+          for (unsigned int i = 0; i < active.size(); ++i)
+            lambda(active[i]) = x(i);
+        }
+      if (lambda.minCoeff() < -1e-10 || (A * lambda - missing).minCoeff() < -1e-10)
+        continue;
+      const Eigen::VectorXd solution = v + w.asDiagonal() * J.transpose() * lambda;
+      for (unsigned int i = 0; i < m; ++i)
+        result[i / 2][i % 2] = solution(i);
+      return result;
+    }
+  AssertThrow(false, dealii::ExcInternalError());
+  return result;
+}
+
+ContactOptions
+sharp()
+{
+  ContactOptions options;
+  options.tolerance          = 1e-10;
+  options.maximum_iterations = 20000;
+  return options;
+}
+
+/// Against all active sets, and parts on several ranks against the whole on one.
+template <int dim>
+void
+compare(const double friction, const bool with_rigid)
+{
+  const unsigned int rank    = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
+                     n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  double worst = 0, worst_oracle = 0, momentum = 0;
+  bool   converged = true;
+  for (unsigned int seed = 0; seed < 30; ++seed)
+    {
+      const Problem<dim> whole(9, seed, friction, with_rigid), part = whole.part(rank, n_ranks);
+      Solver<dim>        serial(sharp(), MPI_COMM_SELF), parallel(sharp(), MPI_COMM_WORLD);
+      const double       dt = 0.01;
+      serial.solve(whole.contacts, whole.keys, whole.rows, whole.unknowns, whole.rigid, dt);
+      parallel.solve(part.contacts, part.keys, part.rows, part.unknowns, part.rigid, dt);
+      converged =
+        converged && serial.report().velocity.converged && parallel.report().velocity.converged;
+      const auto &v = serial.velocities();
+      for (unsigned int i = 0; i < part.unknowns.size(); ++i)
+        worst =
+          std::max(worst,
+                   (parallel.velocities().nodes[i] - v.nodes[part.unknowns[i].key / 77]).norm());
+      if (with_rigid && !part.contacts.empty())
+        worst = std::max(worst, (parallel.velocities().spin[0] - v.spin[0]).norm());
+      if constexpr (dim == 2)
+        if (friction == 0 && !with_rigid)
+          {
+            const auto exact = try_all(whole, dt);
+            for (unsigned int i = 0; i < exact.size(); ++i)
+              worst_oracle = std::max(worst_oracle, (exact[i] - v.nodes[i]).norm());
+          }
+      // Momentum of what is free to move in y.
+      dealii::Tensor<1, dim> change;
+      for (unsigned int i = 0; i < whole.unknowns.size(); ++i)
+        change[1] +=
+          (v.nodes[i][1] - whole.unknowns[i].velocity[1]) / whole.unknowns[i].inverse_mass[1];
+      if (with_rigid)
+        change[1] += (v.rigid[0][1] - whole.rigid[0].velocity[1]) / whole.rigid[0].inverse_mass[1];
+      momentum = std::max(momentum, std::abs(change[1]));
+    }
+  worst = dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD);
+  deallog << dim << "-D, friction " << friction << ", rigid " << with_rigid << ": converged "
+          << converged << ", ranks agree to 1e-7 " << (worst < 1e-7) << ", as all active sets "
+          << (worst_oracle < 1e-8) << ", momentum " << (momentum < 1e-13) << std::endl;
+}
+
+/// A block on a plate: it slides, slows down with mu g, and stays.
+void
+friction()
+{
+  const double mu = 0.3, g = 9.81, dt = 1e-3;
+  auto         plate = one_body<3>(SurfaceKind::closed, 0, mu);
+  add_sheet(plate, 20, 2, [](const unsigned int i, const unsigned int j) {
+    return dealii::Point<3>(0.1 * i - 0.5, 0.5 * j - 0.5, 0);
+  });
+  Points<3> points;
+  points.radius = 0.01;
+  points.add(dealii::Point<3>(0, 0.1, 0.01), dealii::Tensor<1, 3>({1.2, 0.5, 0.}), 2.);
+  ContactSystem<3>             contacts(ContactOptions(), MPI_COMM_SELF);
+  std::vector<RigidUnknown<3>> rigid;
+  double                       worst = 0;
+  for (unsigned int k = 1; k <= 600; ++k)
+    {
+      points.velocity[2][0] -= g * dt;
+      step(contacts, plate, points, rigid, dt);
+      const double expected = std::max(0., 1.3 - mu * g * dt * k);
+      worst =
+        std::max(worst,
+                 std::abs(std::hypot(points.velocity[0][0], points.velocity[1][0]) - expected));
+    }
+  deallog << "sliding block: speed is 1.3 - mu g t, then 0: " << (worst < 1e-5)
+          << ", direction kept "
+          << (std::abs(points.position[1][0] - 0.1 - 0.5 / 1.2 * points.position[0][0]) < 1e-6)
+          << std::endl;
+}
+
+/// A particle strikes a free rigid body off its centre, with friction.
+template <int dim>
+void
+angular_momentum()
+{
+  RigidUnknown<dim> body;
+  for (int d = 0; d < dim; ++d)
+    body.inverse_mass[d] = 0.25;
+  for (unsigned int d = 0; d < 3; ++d)
+    body.inverse_inertia[d][d] = 1. / (1 + d);
+  std::vector<RigidUnknown<dim>> rigid   = {body};
+  auto                           surface = one_body<dim>(SurfaceKind::closed, 0, 0.4);
+  surface.bodies[0].rigid_body           = 0;
+  if constexpr (dim == 2)
+    add_polyline(surface, {dealii::Point<2>(1, 0.5), dealii::Point<2>(-1, 0.5)}, false);
+  else
+    add_sheet(surface, 2, 2, [](const unsigned int i, const unsigned int j) {
+      return dealii::Point<3>(i - 1., j - 1., 0.5);
+    });
+  Points<dim> points;
+  points.radius = 0.1;
+  dealii::Point<dim>     x;
+  dealii::Tensor<1, dim> v0;
+  x[0]        = 0.7;
+  x[dim - 1]  = 0.56;
+  v0[0]       = 3;
+  v0[dim - 1] = -2;
+  points.add(x, v0, 1.5);
+  ContactSystem<dim> contacts(ContactOptions(), MPI_COMM_SELF);
+  step(contacts, surface, points, rigid, 0.01);
+  const auto &given  = contacts.rigid_impulses()[0];
+  const auto  taken  = 1.5 * (points.v(0) - v0);
+  const auto  moment = Delassus<dim>::torque(dealii::Tensor<1, dim>(x), taken);
+  deallog << dim << "-D: momentum " << ((given.impulse + taken).norm() < 1e-14)
+          << ", angular momentum " << ((given.moment + moment).norm() < 1e-14) << ", cone "
+          << (std::abs(taken[0]) <= 0.4 * taken[dim - 1] * (1 + 1e-12)) << ", something happened "
+          << (taken.norm() > 1) << std::endl;
+}
+
+/// The blended law turns the share alpha of the depth into velocity (Song, Liu & Zhang 2020, Eq.
+/// 65).
+void
+blended()
+{
+  auto plate = one_body<2>(SurfaceKind::closed);
+  add_polyline(plate, {dealii::Point<2>(1, 0), dealii::Point<2>(-1, 0)}, false);
+  Points<2> points;
+  points.radius = 0.01;
+  points.add(dealii::Point<2>(0, 0.008), dealii::Tensor<1, 2>({1., -3.}));
+  points.add(dealii::Point<2>(0.3, 0.0105), dealii::Tensor<1, 2>({0., -3.}));
+  ContactOptions options;
+  options.law   = Law::blended;
+  options.alpha = 0.4;
+  ContactSystem<2>             contacts(options, MPI_COMM_SELF);
+  std::vector<RigidUnknown<2>> rigid;
+  step(contacts, plate, points, rigid, 0.001);
+  deallog << "blended: " << points.velocity[1][0]
+          << " (0.8), not yet in contact: " << points.velocity[1][1] << std::endl;
+}
+
+int
+main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  mpi_initlog();
+  for (const double mu : {0., 0.3})
+    for (const bool with_rigid : {false, true})
+      {
+        compare<2>(mu, with_rigid);
+        compare<3>(mu, with_rigid);
+      }
+  friction();
+  angular_momentum<2>();
+  angular_momentum<3>();
+  blended();
+}

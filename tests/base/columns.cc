@@ -31,6 +31,8 @@ main()
     deallog << "row " << i << ": " << columns[0][i] << ' ' << columns[1][i] << ' ' << columns[2][i]
             << std::endl;
 
+  deallog << "spare entries are zero: " << (columns[0][3] == 0 && columns[2][4] == 0) << std::endl;
+
   double row[3];
   columns.get_row(1, row);
   columns.set_row(2, row);

@@ -21,7 +21,7 @@ test_log(const unsigned int me, const unsigned int n_ranks)
   log.open("log.txt");
   log.out() << "after" << std::endl;
   log.report();
-  for (unsigned int i = 0; i < 4; ++i)
+  for (unsigned int i = 0; i < 8; ++i)
     log.warning("worn out", "event " + std::to_string(i) + " on rank " + std::to_string(me));
   if (me + 1 == n_ranks)
     log.warning("rare", "on the last rank");

@@ -76,15 +76,19 @@ template <int dim>
 double
 MaterialPoints<dim>::kinetic_energy() const
 {
-  double result = 0;
-  for (std::size_t row = 0; row < n_rows(); ++row)
+  // The spare rows behind the end have no mass.
+  Pack8 result{};
+  for (std::size_t row = 0; row < n_rows(); row += pack_size)
     {
-      double square = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        square += columns[Layout::velocity + d][row] * columns[Layout::velocity + d][row];
-      result += 0.5 * columns[Layout::mass][row] * square;
+      Pack8 square{};
+      for (int d = 0; d < dim; ++d)
+        {
+          const Pack8 v = load<Pack8>(column(Layout::velocity + d) + row);
+          square += v * v;
+        }
+      result += 0.5 * load<Pack8>(column(Layout::mass) + row) * square;
     }
-  return result;
+  return sum(result);
 }
 
 template <int dim>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 namespace coracle
 {
@@ -151,6 +153,18 @@ plate_with_hole(const Parameters &section, dealii::Triangulation<dim> &triangula
                                            section.quantity("Thickness"),
                                            section.integer("Subdivisions along z") + 1,
                                            true);
+
+  // Only the hole is kept round: deal.II's transfinite interpolation cannot follow a copied mesh.
+  const dealii::types::boundary_id hole_id = 4;
+  triangulation.reset_all_manifolds();
+  triangulation.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
+  for (const auto &face : triangulation.active_face_iterators())
+    if (face->at_boundary() && face->boundary_id() == hole_id)
+      face->set_all_manifold_ids(0);
+  if constexpr (dim == 2)
+    triangulation.set_manifold(0, dealii::SphericalManifold<2>());
+  else
+    triangulation.set_manifold(0, dealii::CylindricalManifold<3>(2));
 }
 
 template <int dim>
@@ -192,9 +206,11 @@ read_file(const Parameters &section, dealii::Triangulation<dim> &triangulation)
     }
   catch (const dealii::ExceptionBase &e)
     {
+      std::ostringstream reason;
+      e.print_info(reason);
       throw section.error("File",
                           "mesh file that cannot be read",
-                          e.get_exc_name(),
+                          dealii::Utilities::trim(reason.str()),
                           "check that the file has a mesh of quadrilaterals (2-D) or hexahedra "
                           "(3-D) of first order and nothing else of that dimension");
     }

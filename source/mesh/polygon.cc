@@ -37,6 +37,24 @@ doubled_area(const std::vector<Point2> &corners)
   return result;
 }
 
+/// Do two edges that share no corner meet?
+bool
+is_crossing(const std::vector<Point2> &corners)
+{
+  const std::size_t m = corners.size();
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = i + 2; j < m; ++j)
+      if (!(i == 0 && j == m - 1))
+        {
+          const Point2 &a = corners[i], &b = corners[i + 1], &c = corners[j],
+                       &d = corners[(j + 1) % m];
+          if (doubled_area(a, b, c) * doubled_area(a, b, d) <= 0 &&
+              doubled_area(c, d, a) * doubled_area(c, d, b) <= 0)
+            return true;
+        }
+  return false;
+}
+
 Point2
 middle(const Point2 &a, const Point2 &b)
 {
@@ -195,6 +213,8 @@ polygon_mesh(std::vector<Point2>              corners,
     throw std::invalid_argument("a polygon needs three corners");
   if (subdivisions.size() != 1 && !(subdivisions.size() == 3 && corners.size() == 3))
     throw std::invalid_argument("give one number of subdivisions, or three for a triangle");
+  if (is_crossing(corners) || doubled_area(corners) == 0)
+    throw std::invalid_argument("the polygon crosses or touches itself, or has no area");
   // Counter-clockwise, keeping the first corner and with it the ids of most use.
   const bool clockwise = doubled_area(corners) < 0;
   const auto original  = corners;

@@ -38,7 +38,8 @@ facet_key(const Cell &cell, const unsigned int face)
   std::uint64_t          path = 1;
   for (const auto child : id.get_child_indices())
     path = 8 * path + static_cast<unsigned int>(child);
-  return (((id.get_coarse_cell_id() << path_bits) + path) << face_bits) + face;
+  const std::uint64_t coarse = id.get_coarse_cell_id();
+  return (((coarse << path_bits) + path) << face_bits) + face;
 }
 
 } // namespace

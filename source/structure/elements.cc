@@ -51,6 +51,32 @@ is_turned_out(NodalVectors<dim, double> x)
   return false;
 }
 
+/**
+ * Resistance to a small shear, found by trying it; for liquids, which have none, a thousandth of
+ * the modulus of pressure waves, so that hourglasses are still held [Pa].
+ */
+double
+shear_modulus(const MaterialVariant &material)
+{
+  return std::visit(
+    [](const auto &m) {
+      using Material           = std::decay_t<decltype(m)>;
+      constexpr double  strain = 1e-6;
+      Motion<3, double> motion{};
+      motion.velocity_gradient[0][1] = motion.velocity_gradient[1][0] = strain;
+      motion.deformation_gradient                                     = identity<3, double>();
+      motion.deformation_gradient[0][1] = motion.deformation_gradient[1][0] = strain;
+      motion.density                                                        = m.reference_density();
+      motion.length = motion.dt = 1;
+      Symmetric<3, double>                                 stress;
+      std::array<double, std::max(Material::n_history, 1)> history{};
+      m.template update<3, double>(motion, stress, history.data());
+      const double speed = m.sound_speed(m.reference_density());
+      return std::max(stress(0, 1) / (2 * strain), 1e-3 * m.reference_density() * speed * speed);
+    },
+    material);
+}
+
 double
 reference_density(const MaterialVariant &material)
 {
@@ -68,7 +94,7 @@ Elements<dim>::Elements(const StructureMesh<dim> &mesh,
   , n_elements(mesh.n_elements())
   , stable_step(std::numeric_limits<double>::infinity())
 {
-  data.hourglass_coefficient = hourglass_coefficient;
+  data.hourglass_modulus = hourglass_coefficient * shear_modulus(material);
   data.n_history  = std::visit([](const auto &m) -> unsigned int { return m.n_history; }, material);
   data.n_elements = n_elements;
   allocate(mesh);

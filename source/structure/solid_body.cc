@@ -21,10 +21,11 @@ SolidBody<dim>::declare(Declaration &section)
     "several times faster, with hourglass control");
   section.when("Integration", "one point")
     .quantity("Hourglass coefficient",
-              "0.05",
+              "0.1",
               "1",
               "kappa",
-              "stiffness against modes that one point does not see; 1 is about full integration",
+              "stiffness against modes that one point does not see, over the shear modulus; 1 is "
+              "about full integration and best for elastic bending",
               0.,
               1.);
   BoundaryConditions<dim>::declare(section);

@@ -43,7 +43,8 @@ class Elements
 public:
   static constexpr int n_nodes = 1 << dim;
 
-  /// @param hourglass_coefficient 1 is about the stiffness of full integration [1]
+  /// @param hourglass_coefficient times the shear modulus; 1 is about the stiffness of full
+  /// integration [1]
   Elements(const StructureMesh<dim> &mesh,
            const MaterialVariant    &material,
            const Integration         integration,
@@ -82,8 +83,8 @@ public:
     /// mass, reference volume, hourglass energy, hourglass forces, then stress and history of each
     /// point.
     Columns              columns;
-    unsigned int         n_history             = 0;
-    double               hourglass_coefficient = 0;
+    unsigned int         n_history         = 0;
+    double               hourglass_modulus = 0;
     static constexpr int mass = 0, volume = 1, energy = 2, hourglass = 3;
     static constexpr int first_stress = 3 + dim * (dim == 2 ? 1 : 4);
 

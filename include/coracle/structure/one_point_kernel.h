@@ -13,8 +13,9 @@
  * A = sigma - sum_m Q (Gamma_m . x)^T / V, neither q nor the force needs the nodal
  * vectors gamma_m of that paper.
  *
- * k = kappa rho c^2 sum B^2 / (V n), n = 24 (2-D), 72 (3-D): for a square or cube
- * kappa = 1 is the stiffness that full integration has if mu = 0.
+ * k = kappa mu sum B^2 / (V n), n = 12 (2-D), 31 (3-D), mu the shear modulus: for a square or
+ * cube kappa = 1 is the stiffness that full integration with F-bar has, and bends a square as a
+ * beam of Poisson ratio 0 bends.
  */
 namespace coracle::internal
 {
@@ -27,7 +28,7 @@ hourglass_stiffness(const double modulus, const NodalVectors<dim, Pack8> &b, con
 {
   const Pack8 l = inverse_length<dim>(b, volume);
   // sum B^2 / V = 4 / 2^dim V / L^2
-  return (modulus * 4. / nodes_per_element<dim> / (dim == 2 ? 24. : 72.)) * volume * l * l;
+  return (modulus * 4. / nodes_per_element<dim> / (dim == 2 ? 12. : 31.)) * volume * l * l;
 }
 
 /// q_jm of a field with modes u and gradient g, in an element with modes x.
@@ -158,12 +159,10 @@ one_point_rate(const Material               &material,
   for (int j = 0; j < dim; ++j)
     for (int m = 0; m < nodes_per_element<dim>; ++m)
       mid_modes[j][m] -= 0.5 * dx_modes[j][m];
-  const double speed   = material.sound_speed(material.reference_density()),
-               modulus = data.hourglass_coefficient * material.reference_density() * speed * speed;
   HourglassForces<dim> spring;
   stretch_springs<dim>(increment,
                        hourglass_amplitudes<dim>(dx_modes, increment, mid_modes),
-                       hourglass_stiffness<dim>(modulus, b, volume),
+                       hourglass_stiffness<dim>(data.hourglass_modulus, b, volume),
                        pack,
                        data.columns,
                        spring);
@@ -221,9 +220,7 @@ one_point_hyperelastic(const Material               &material,
   limits.is_good &= (volume > 0.) & (j > 0.) & (abs(point.stress.trace()) < 1e300);
 
   const NodalVectors<dim, Pack8> x0_modes = modes_of<dim>(x0);
-  const double                   speed    = material.sound_speed(material.reference_density()),
-               modulus = data.hourglass_coefficient * material.reference_density() * speed * speed;
-  const Pack8          stiffness = hourglass_stiffness<dim>(modulus, b0, volume_0);
+  const Pack8          stiffness = hourglass_stiffness<dim>(data.hourglass_modulus, b0, volume_0);
   HourglassForces<dim> spring    = hourglass_amplitudes<dim>(modes_of<dim>(x), f, x0_modes);
   Pack8                energy{};
   for (auto &component : spring)

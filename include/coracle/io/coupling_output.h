@@ -34,25 +34,26 @@ public:
   void write_statistics(const Report<dim> &report, Coupling<dim> &coupling);
 
 private:
-  void write_particles(const MaterialPointBody<dim> &body, ParticleOutput &output, const double time);
-  void write_structure(const StructuralBody<dim>                       &body,
-                       const std::vector<Symmetric<dim, double>>       *stress,
-                       MeshOutput                                      &output,
-                       const double                                     time);
-  void write_octree(const Coupling<dim> &coupling);
-  void add_bodies(Report<dim> &report, Coupling<dim> &coupling);
-  void make_probes(const Parameters &root, Coupling<dim> &coupling);
+  void
+  write_particles(const MaterialPointBody<dim> &body, ParticleOutput &output, const double time);
+  void               write_structure(const StructuralBody<dim>                 &body,
+                                     const std::vector<Symmetric<dim, double>> *stress,
+                                     MeshOutput                                &output,
+                                     const double                               time);
+  void               write_octree(const Coupling<dim> &coupling);
+  void               add_bodies(Report<dim> &report, Coupling<dim> &coupling);
+  void               make_probes(const Parameters &root, Coupling<dim> &coupling);
   static EnergyBooks energies(const Coupling<dim> &coupling);
 
-  OutputSettings                                settings;
-  MPI_Comm                                      comm;
-  Statistics                                    statistics;
-  std::vector<ParticleOutput>                   particles;
-  std::vector<MeshOutput>                       structures;
-  std::unique_ptr<MeshOutput>                   octree;
+  OutputSettings                                           settings;
+  MPI_Comm                                                 comm;
+  Statistics                                               statistics;
+  std::vector<ParticleOutput>                              particles;
+  std::vector<MeshOutput>                                  structures;
+  std::unique_ptr<MeshOutput>                              octree;
   std::vector<std::pair<std::string, BodyPointProbe<dim>>> body_probes;
   std::vector<std::pair<std::string, PointProbe<dim>>>     point_probes;
-  EnergyBalance                                 balance;
+  EnergyBalance                                            balance;
   /// Per body (solids, rigids, material points): momentum from contact at the last report [N s].
   std::vector<dealii::Tensor<1, dim>> reported_momentum;
   std::vector<dealii::Tensor<1, dim>> reported_force;

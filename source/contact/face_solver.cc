@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/contact/face_solver.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace coracle::contact
@@ -9,10 +8,25 @@ namespace coracle::contact
 namespace
 {
 /// The residual on the face is brought down to this part before the next sweep.
-constexpr double       reduction     = 0.03;
-constexpr unsigned int least_steps   = 4;
-constexpr unsigned int most_steps    = 64;
-constexpr unsigned int most_attempts = 3;
+constexpr double       reduction  = 0.05;
+constexpr unsigned int most_steps = 40;
+/// Length of the expansion step; it must stay below 2 for the true largest eigenvalue.
+constexpr double expansion = 1.5;
+
+/// Nearest impulse that pushes and does not exceed friction.
+template <int dim>
+dealii::Tensor<1, dim>
+admissible(const typename Delassus<dim>::Row &row,
+           const dealii::Tensor<1, dim>      &impulse,
+           const bool                         friction)
+{
+  const double normal = impulse * row.normal;
+  if (normal <= 0)
+    return {};
+  const dealii::Tensor<1, dim> tangential = impulse - normal * row.normal;
+  const double limit = (friction ? row.friction * normal : 0.), size = tangential.norm();
+  return normal * row.normal + (size > limit ? limit / size : 1.) * tangential;
+}
 
 template <int dim>
 void
@@ -33,26 +47,15 @@ FaceSolver<dim>::FaceSolver(MPI_Comm communicator) : communicator(communicator)
 {}
 
 template <int dim>
-double
-FaceSolver<dim>::sum(double a) const
-{
-  MPI_Allreduce(MPI_IN_PLACE, &a, 1, MPI_DOUBLE, MPI_SUM, communicator);
-  return a;
-}
-
-template <int dim>
 void
-FaceSolver<dim>::reinit(const Delassus<dim> &delassus, const Velocities<dim> &free)
+FaceSolver<dim>::reinit(const Delassus<dim> &delassus)
 {
   const auto &rows = delassus.rows();
-  n_steps          = 2 * least_steps;
-  free_velocity.resize(rows.size());
-  for (std::size_t c = 0; c < rows.size(); ++c)
-    free_velocity[c] = delassus.relative_velocity(rows[c], free);
-  for (auto *list : {&way, &direction, &remainder, &trial, &change})
+  for (auto *list : {&direction, &remainder, &change})
     list->resize(rows.size());
   face.resize(rows.size());
   delassus.set_zero(zero);
+  stiffness = 1;
 }
 
 template <int dim>
@@ -89,85 +92,167 @@ FaceSolver<dim>::restrict_to_face(const std::size_t c, const Vector &normal, con
 
 template <int dim>
 void
-FaceSolver<dim>::respond(Delassus<dim>             &delassus,
-                         const std::vector<Vector> &impulses,
-                         Velocities<dim>           &result)
+FaceSolver<dim>::respond(Delassus<dim> &delassus, const std::vector<Vector> &impulses)
 {
   double unused = 0;
-  result        = zero;
+  response      = zero;
   for (std::size_t c = 0; c < impulses.size(); ++c)
     if (impulses[c].norm_square() > 0)
-      delassus.apply(delassus.rows()[c], impulses[c], result);
-  delassus.synchronise(result, zero, unused);
+      delassus.apply(delassus.rows()[c], impulses[c], response);
+  delassus.synchronise(response, zero, unused);
+}
+
+template <int dim>
+void
+FaceSolver<dim>::start_face(const Delassus<dim>       &delassus,
+                            const std::vector<double> &target,
+                            const bool                 friction,
+                            const std::vector<Vector> &impulses,
+                            const Velocities<dim>     &v)
+{
+  find_face(delassus, friction, impulses);
+  const auto &rows = delassus.rows();
+  rho = largest = 0;
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    {
+      direction[c] = remainder[c] = Vector();
+      if (face[c] == Free::nothing)
+        continue;
+      const Vector wanted = target[c] * rows[c].normal - delassus.relative_velocity(rows[c], v);
+      remainder[c]        = restrict_to_face(c, rows[c].normal, wanted);
+      direction[c]        = remainder[c] / rows[c].true_inverse_mass;
+      rho += remainder[c] * direction[c];
+      largest = std::max(largest, remainder[c].norm());
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &rho, 1, MPI_DOUBLE, MPI_SUM, communicator);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
 }
 
 template <int dim>
 double
-FaceSolver<dim>::energy(const Delassus<dim>       &delassus,
-                        const std::vector<double> &target,
-                        const std::vector<Vector> &impulses,
-                        const Velocities<dim>     &v) const
+FaceSolver<dim>::admissible_length(const Delassus<dim>       &delassus,
+                                   const bool                 friction,
+                                   const std::vector<Vector> &impulses) const
 {
-  double      result = 0;
+  double      length = 1e300;
   const auto &rows   = delassus.rows();
   for (std::size_t c = 0; c < rows.size(); ++c)
-    result += impulses[c] * (0.5 * (delassus.relative_velocity(rows[c], v) + free_velocity[c]) -
-                             target[c] * rows[c].normal);
-  return sum(result);
+    {
+      if (face[c] == Free::nothing)
+        continue;
+      const double normal = impulses[c] * rows[c].normal, step = direction[c] * rows[c].normal;
+      if (step < 0)
+        length = std::min(length, -normal / step);
+      if (!friction || rows[c].friction == 0)
+        continue;
+      // Where |P_t + s d_t| = mu (P_n + s d_n).
+      const Vector tangential = impulses[c] - normal * rows[c].normal,
+                   slide      = direction[c] - step * rows[c].normal;
+      const double mu2        = rows[c].friction * rows[c].friction;
+      const double A          = slide * slide - mu2 * step * step,
+                   B          = tangential * slide - mu2 * normal * step,
+                   C          = std::min(0., tangential * tangential - mu2 * normal * normal);
+      const double root       = B * B - A * C;
+      if (root >= 0)
+        {
+          const double q = -(B + std::copysign(std::sqrt(root), B));
+          for (const double s : {A != 0 ? q / A : -1., q != 0 ? C / q : -1.})
+            if (s > 0)
+              length = std::min(length, s);
+        }
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &length, 1, MPI_DOUBLE, MPI_MIN, communicator);
+  return length;
 }
 
 template <int dim>
-unsigned int
-FaceSolver<dim>::conjugate_gradients(Delassus<dim>             &delassus,
-                                     const std::vector<double> &target,
-                                     const Velocities<dim>     &v)
+bool
+FaceSolver<dim>::take_step(Delassus<dim>       &delassus,
+                           const bool           friction,
+                           std::vector<Vector> &impulses,
+                           Velocities<dim>     &v)
 {
   const auto &rows = delassus.rows();
-  double      rho  = 0;
+  respond(delassus, direction);
+  double sums[2] = {0, 0};
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (face[c] != Free::nothing)
+      {
+        change[c] =
+          restrict_to_face(c, rows[c].normal, delassus.relative_velocity(rows[c], response));
+        sums[0] += direction[c] * change[c];
+        sums[1] += direction[c] * direction[c] * rows[c].true_inverse_mass;
+      }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, communicator);
+  if (!(sums[0] > 0))
+    return false;
+  stiffness          = std::max(stiffness, sums[0] / sums[1]);
+  const double whole = rho / sums[0], allowed = admissible_length(delassus, friction, impulses);
+  if (allowed < whole)
+    {
+      // Cut short contact by contact instead of all together.
+      for (std::size_t c = 0; c < rows.size(); ++c)
+        {
+          change[c] = Vector();
+          if (face[c] == Free::nothing)
+            continue;
+          const Vector next =
+            admissible<dim>(rows[c], impulses[c] + whole * direction[c], friction);
+          change[c]   = next - impulses[c];
+          impulses[c] = next;
+        }
+      respond(delassus, change);
+      add_scaled(v, 1., response);
+      return false;
+    }
+  const double length  = whole;
+  double       next[2] = {0, 0};
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (face[c] != Free::nothing)
+      {
+        impulses[c] += length * direction[c];
+        if (impulses[c] * rows[c].normal <= 0)
+          impulses[c] = Vector();
+        remainder[c] -= length * change[c];
+        next[0] += remainder[c].norm_square() / rows[c].true_inverse_mass;
+        next[1] = std::max(next[1], remainder[c].norm_square());
+      }
+  add_scaled(v, length, response);
+  MPI_Allreduce(MPI_IN_PLACE, &next[0], 1, MPI_DOUBLE, MPI_SUM, communicator);
+  MPI_Allreduce(MPI_IN_PLACE, &next[1], 1, MPI_DOUBLE, MPI_MAX, communicator);
+  const double beta = next[0] / rho;
+  rho               = next[0];
+  largest           = std::sqrt(next[1]);
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    if (face[c] != Free::nothing)
+      direction[c] = remainder[c] / rows[c].true_inverse_mass + beta * direction[c];
+  return true;
+}
+
+template <int dim>
+void
+FaceSolver<dim>::expand(Delassus<dim>             &delassus,
+                        const std::vector<double> &target,
+                        const bool                 friction,
+                        std::vector<Vector>       &impulses,
+                        Velocities<dim>           &v)
+{
+  const auto &rows = delassus.rows();
   for (std::size_t c = 0; c < rows.size(); ++c)
     {
-      const Vector wanted = target[c] * rows[c].normal - delassus.relative_velocity(rows[c], v);
-      way[c]              = Vector();
-      remainder[c]        = restrict_to_face(c, rows[c].normal, wanted);
-      direction[c] =
-        (face[c] == Free::nothing ? Vector() : remainder[c] / rows[c].true_inverse_mass);
-      rho += remainder[c] * direction[c];
+      change[c] = Vector();
+      if (rows[c].fixed)
+        continue;
+      // Masses are true here, not split among ranks.
+      const double share =
+        expansion / stiffness * rows[c].normal_inverse_mass / rows[c].true_inverse_mass;
+      const Vector next = next_impulse<dim>(
+        rows[c], impulses[c], delassus.relative_velocity(rows[c], v), target[c], friction, share);
+      change[c]   = next - impulses[c];
+      impulses[c] = next;
     }
-  rho                = sum(rho);
-  const double goal  = reduction * reduction * rho;
-  unsigned int steps = 0;
-  while (steps < n_steps && rho > goal)
-    {
-      respond(delassus, direction, response);
-      double curvature = 0;
-      for (std::size_t c = 0; c < rows.size(); ++c)
-        if (face[c] != Free::nothing)
-          {
-            change[c] =
-              restrict_to_face(c, rows[c].normal, delassus.relative_velocity(rows[c], response));
-            curvature += direction[c] * change[c];
-          }
-      curvature = sum(curvature);
-      if (curvature <= 0)
-        break;
-      const double length = rho / curvature;
-      double       next   = 0;
-      for (std::size_t c = 0; c < rows.size(); ++c)
-        if (face[c] != Free::nothing)
-          {
-            way[c] += length * direction[c];
-            remainder[c] -= length * change[c];
-            next += remainder[c].norm_square() / rows[c].true_inverse_mass;
-          }
-      next              = sum(next);
-      const double beta = next / rho;
-      for (std::size_t c = 0; c < rows.size(); ++c)
-        if (face[c] != Free::nothing)
-          direction[c] = remainder[c] / rows[c].true_inverse_mass + beta * direction[c];
-      rho = next;
-      ++steps;
-    }
-  return steps;
+  respond(delassus, change);
+  add_scaled(v, 1., response);
 }
 
 template <int dim>
@@ -175,42 +260,22 @@ unsigned int
 FaceSolver<dim>::improve(Delassus<dim>             &delassus,
                          const std::vector<double> &target,
                          const bool                 friction,
+                         const double               goal,
                          std::vector<Vector>       &impulses,
                          Velocities<dim>           &v)
 {
-  const auto &rows = delassus.rows();
-  find_face(delassus, friction, impulses);
-  unsigned int steps  = conjugate_gradients(delassus, target, v);
-  const double before = energy(delassus, target, impulses, v);
-  double       share  = 1;
-  for (unsigned int attempt = 0; attempt < most_attempts; ++attempt, share *= 0.4)
+  start_face(delassus, target, friction, impulses, v);
+  const double enough = reduction * reduction * rho;
+  unsigned int steps  = 0;
+  while (steps < most_steps && rho > enough && largest > goal)
     {
-      for (std::size_t c = 0; c < rows.size(); ++c)
-        {
-          trial[c]            = impulses[c] + share * way[c];
-          const double normal = trial[c] * rows[c].normal;
-          if (normal <= 0)
-            trial[c] = Vector();
-          else if (face[c] != Free::nothing)
-            {
-              Vector       tangential = trial[c] - normal * rows[c].normal;
-              const double limit = rows[c].friction * normal, size = tangential.norm();
-              trial[c] = normal * rows[c].normal + (size > limit ? limit / size : 1.) * tangential;
-            }
-          change[c] = trial[c] - impulses[c];
-        }
-      respond(delassus, change, response);
       ++steps;
-      moved = v;
-      add_scaled(moved, 1., response);
-      if (energy(delassus, target, trial, moved) <= before)
+      if (!take_step(delassus, friction, impulses, v))
         {
-          impulses.swap(trial);
-          std::swap(v, moved);
-          n_steps = (share == 1 ? std::min(most_steps, 2 * n_steps) : n_steps);
-          return steps;
+          expand(delassus, target, friction, impulses, v);
+          start_face(delassus, target, friction, impulses, v);
+          ++steps;
         }
-      n_steps = std::max(least_steps, n_steps / 2);
     }
   return steps;
 }

@@ -11,31 +11,6 @@ namespace
 {
 /// Sweeps that settle which contacts are closed before the face solver goes on from there.
 constexpr unsigned int sweeps_per_face = 2;
-
-/// The next impulse of one contact, everything else held fixed.
-template <int dim>
-dealii::Tensor<1, dim>
-project(const typename Delassus<dim>::Row &row,
-        const dealii::Tensor<1, dim>      &old_impulse,
-        dealii::Tensor<1, dim>             u,
-        const double                       target,
-        const bool                         friction)
-{
-  const double old_normal = old_impulse * row.normal;
-  const double normal =
-    std::max(0., old_normal - (u * row.normal - target) / row.normal_inverse_mass);
-  if (!friction || row.friction == 0 || normal == 0)
-    return normal * row.normal;
-
-  // Friction sees what the normal impulse has changed.
-  u += (normal - old_normal) * row.normal_response;
-  dealii::Tensor<1, dim> tangential = old_impulse - old_normal * row.normal;
-  tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
-  const double limit = row.friction * normal, size = tangential.norm();
-  if (size > limit)
-    tangential *= limit / size;
-  return normal * row.normal + tangential;
-}
 } // namespace
 
 template <int dim>
@@ -60,7 +35,7 @@ GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
       if (row.fixed)
         continue;
       const Vector u      = delassus.relative_velocity(row, v);
-      const Vector next   = project<dim>(row, impulses[c], u, target[c], friction);
+      const Vector next   = next_impulse<dim>(row, impulses[c], u, target[c], friction);
       step[c]             = next - impulses[c];
       impulses[c]         = next;
       const double square = step[c].norm_square();
@@ -87,7 +62,7 @@ GaussSeidel<dim>::residual(const Delassus<dim>       &delassus,
     if (!rows[c].fixed)
       {
         const Vector u    = delassus.relative_velocity(rows[c], v);
-        const Vector next = project<dim>(rows[c], impulses[c], u, target[c], friction);
+        const Vector next = next_impulse<dim>(rows[c], impulses[c], u, target[c], friction);
         result = std::max(result, (next - impulses[c]).norm() * rows[c].normal_inverse_mass);
       }
   return result;
@@ -105,7 +80,7 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
   const auto &rows = delassus.rows();
   step.resize(rows.size());
   if (accelerate)
-    face_solver.reinit(delassus, v);
+    face_solver.reinit(delassus);
 
   // Velocities with the impulses to start from.
   before        = v;
@@ -138,7 +113,8 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
           finished())
         return report;
       if (accelerate && report.iterations % sweeps_per_face == 0)
-        report.face_steps += face_solver.improve(delassus, target, friction, impulses, v);
+        report.face_steps +=
+          face_solver.improve(delassus, target, friction, 0.3 * limits.tolerance, impulses, v);
     }
 }
 

@@ -28,7 +28,7 @@ ContactOptions::declare(Declaration &section)
              "Sweeps of the position correction after which it goes on in the next step",
              1);
   section.quantity("Tolerance",
-                   "1e-6",
+                   "1e-5",
                    "1",
                    "",
                    "Residual of the contact conditions at which the solver stops, relative to the "

@@ -79,6 +79,9 @@ public:
 
   void solve(const std::vector<RigidUnknown<dim>> &rigid, const double dt);
 
+  /// The rows as built, and their unknowns.
+  const RowBuilder<dim> &row_builder() const { return rows; }
+
   /// Per contact, as acting on the point.
   const Impulses<dim> &impulses() const { return solver.impulses(); }
 

@@ -4,7 +4,7 @@
 // exactly mu g and holds it below; momentum and angular momentum are conserved to
 // round-off, also with a rigid body.
 
-#include <Eigen/Dense>
+#include <eigen3/Eigen/Dense>
 
 #include "scene.h"
 

@@ -57,7 +57,9 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
   const Vector initial_velocity = body.template point<dim>("Initial velocity");
   for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
     this->set_vector(Node::velocity, n, initial_velocity);
-  update_stress(1.);
+  find_contact_nodes();
+  // No displacement yet: finds bad elements and the first stable step, on all ranks alike.
+  mpi::agree([&] { update_stress(1.); }, comm);
 }
 
 template <int dim>
@@ -81,6 +83,24 @@ SolidBody<dim>::set_mass()
         double &inverse = nodes[Node::inverse_mass + d][hanging.node] = 0;
         for (const auto &[parent, weight] : hanging.parents)
           inverse += weight * weight * nodes[Node::inverse_mass + d][parent];
+      }
+}
+
+template <int dim>
+void
+SolidBody<dim>::find_contact_nodes()
+{
+  // A rank may own a node of the surface without owning a facet of it; the column is free yet.
+  Columns &nodes = this->node_columns;
+  for (const unsigned int n : this->surface_nodes())
+    nodes[Node::impulse][n] = 1;
+  condense(Node::impulse, 1);
+  this->mesh().exchange.sum_to_owners(nodes, Node::impulse, 1);
+  for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+    if (nodes[Node::impulse][n] > 0)
+      {
+        contact_nodes.push_back(n);
+        nodes[Node::impulse][n] = 0;
       }
 }
 
@@ -203,7 +223,7 @@ SolidBody<dim>::apply_contact_impulses()
   condense(Node::impulse, dim);
   this->mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
   for (int d = 0; d < dim; ++d)
-    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+    for (const unsigned int n : contact_nodes)
       {
         double      &impulse = nodes[Node::impulse + d][n], &v = nodes[Node::velocity + d][n];
         const double before = v, inverse_mass = nodes[Node::inverse_mass + d][n];
@@ -234,9 +254,10 @@ SolidBody<dim>::apply_corrections()
   condense(Node::correction, dim);
   this->mesh().exchange.sum_to_owners(nodes, Node::correction, dim);
   for (int d = 0; d < dim; ++d)
-    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+    for (const unsigned int n : contact_nodes)
       nodes[Node::correction + d][n] *= nodes[Node::inverse_mass + d][n];
   distribute(Node::correction);
+  is_corrected = true;
 }
 
 template <int dim>
@@ -249,13 +270,21 @@ SolidBody<dim>::move(const double dt)
       const double *const v = nodes[Node::velocity + d];
       double *const x = nodes[Node::position + d], *const dx = nodes[Node::increment + d],
                     *const correction = nodes[Node::correction + d];
-      for (unsigned int n = 0; n < nodes.size(); ++n)
-        {
-          dx[n] = dt * v[n] + correction[n];
-          x[n] += dx[n];
-          correction[n] = 0;
-        }
+      if (is_corrected)
+        for (unsigned int n = 0; n < nodes.size(); ++n)
+          {
+            dx[n] = dt * v[n] + correction[n];
+            x[n] += dx[n];
+            correction[n] = 0;
+          }
+      else
+        for (unsigned int n = 0; n < nodes.size(); ++n)
+          {
+            dx[n] = dt * v[n];
+            x[n] += dx[n];
+          }
     }
+  is_corrected = false;
 }
 
 template <int dim>

@@ -78,6 +78,7 @@ private:
   using Node = NodeColumns<dim>;
 
   void   set_mass();
+  void   find_contact_nodes();
   void   kick(const double duration, const double dt);
   double damping_at(const double time) const;
   /// Forces of hanging nodes go to their parents.
@@ -93,6 +94,9 @@ private:
   const double damping, damping_start, damping_end;
 
   double time = 0, last_dt = 0;
+  /// Owned nodes that contact may touch, also through hanging nodes.
+  std::vector<unsigned int> contact_nodes;
+  bool                      is_corrected = false;
   /// This rank's part of all books but `kinetic` and `hourglass`; strain includes hourglass.
   Energies books;
 };

@@ -21,11 +21,7 @@ class BareKernel
 {
 public:
   BareKernel(const unsigned int n_cells_per_metre)
-    : n(n_cells_per_metre)
-    , nz(n + n / 4)
-    , h(1. / n)
-    , dt(0.3 * h / sound_speed)
-    , columns(8)
+    : n(n_cells_per_metre), nz(n + n / 4), h(1. / n), dt(0.3 * h / sound_speed), columns(8)
   {
     for (auto &records : nodes)
       records.resize((n + 1) * (n + 1) * (nz + 1));
@@ -72,7 +68,8 @@ private:
     return i + (n + 1) * (j + (n + 1) * k);
   }
 
-  std::array<unsigned int, 8> corners(const unsigned int i, const unsigned int j, const unsigned int k) const
+  std::array<unsigned int, 8>
+  corners(const unsigned int i, const unsigned int j, const unsigned int k) const
   {
     std::array<unsigned int, 8> result;
     for (unsigned int c = 0; c < 8; ++c)
@@ -139,15 +136,15 @@ private:
   template <bool take, bool give>
   void sweep_cell(const unsigned int cell)
   {
-    const unsigned int at[] = {cell % n, cell / n % n, cell / n / n};
+    const unsigned int at[]          = {cell % n, cell / n % n, cell / n / n};
     const auto         nodes_of_cell = corners(at[0], at[1], at[2]);
     CornerSums<3>      sums;
     for (unsigned int row = begin[cell]; row < begin[cell + 1]; row += pack_size)
       {
-        const int           n_lanes = std::min<unsigned int>(pack_size, begin[cell + 1] - row);
-        Vector<3, Pack8>    x, v, xi;
-        Pack8               rho = load<Pack8>(columns[6] + row);
-        const Pack8         m   = load<Pack8>(columns[7] + row);
+        const int        n_lanes = std::min<unsigned int>(pack_size, begin[cell + 1] - row);
+        Vector<3, Pack8> x, v, xi;
+        Pack8            rho = load<Pack8>(columns[6] + row);
+        const Pack8      m   = load<Pack8>(columns[7] + row);
         for (int d = 0; d < 3; ++d)
           {
             x[d]  = load<Pack8>(columns[d] + row);
@@ -167,15 +164,22 @@ private:
           }
         if constexpr (give)
           {
-            const Pack8 pressure = sound_speed * sound_speed * (rho - density), volume_per_size = m / rho / h;
+            const Pack8 pressure        = sound_speed * sound_speed * (rho - density),
+                        volume_per_size = m / rho / h;
             for (int l = 0; l < n_lanes; ++l)
               {
-                const bool inside = xi[0][l] >= 0 && xi[0][l] < 1 && xi[1][l] >= 0 && xi[1][l] < 1 &&
-                                    xi[2][l] >= 0 && xi[2][l] < 1;
+                const bool inside = xi[0][l] >= 0 && xi[0][l] < 1 && xi[1][l] >= 0 &&
+                                    xi[1][l] < 1 && xi[2][l] >= 0 && xi[2][l] < 1;
                 if (__builtin_expect(inside, 1))
-                  add({{xi[0][l], xi[1][l], xi[2][l]}}, {{v[0][l], v[1][l], v[2][l]}}, m[l], pressure[l], volume_per_size[l], sums);
+                  add({{xi[0][l], xi[1][l], xi[2][l]}},
+                      {{v[0][l], v[1][l], v[2][l]}},
+                      m[l],
+                      pressure[l],
+                      volume_per_size[l],
+                      sums);
                 else
-                  give_stray(row + l, {{v[0][l], v[1][l], v[2][l]}}, m[l], pressure[l], volume_per_size[l]);
+                  give_stray(
+                    row + l, {{v[0][l], v[1][l], v[2][l]}}, m[l], pressure[l], volume_per_size[l]);
               }
           }
       }
@@ -205,7 +209,8 @@ private:
       }
     rho = rho / (1. + (dt / h) * divergence);
     for (int d = 0; d < 3; ++d)
-      x[d] = max(splat<Pack8>(1e-9), min(splat<Pack8>((d == 2 ? nz : n) * h - 1e-9), Pack8(x[d] + dt * velocity[d])));
+      x[d] = max(splat<Pack8>(1e-9),
+                 min(splat<Pack8>((d == 2 ? nz : n) * h - 1e-9), Pack8(x[d] + dt * velocity[d])));
   }
 
   static void add(const Vector<3, double> &xi,
@@ -227,8 +232,8 @@ private:
                   const double             pressure,
                   const double             volume_per_size)
   {
-    const unsigned int  cell = cell_of(row), at[] = {cell % n, cell / n % n, cell / n / n};
-    Vector<3, double>   xi;
+    const unsigned int cell = cell_of(row), at[] = {cell % n, cell / n % n, cell / n / n};
+    Vector<3, double>  xi;
     for (int d = 0; d < 3; ++d)
       xi[d] = columns[d][row] / h - at[d];
     CornerSums<3> sums;
@@ -236,10 +241,10 @@ private:
     sums.give_to(nodes[0], corners(at[0], at[1], at[2]));
   }
 
-  const unsigned int        n, nz;
-  const double              h, dt;
-  Columns                   columns;
+  const unsigned int         n, nz;
+  const double               h, dt;
+  Columns                    columns;
   std::array<NodeRecords, 2> nodes;
-  std::vector<unsigned int> begin, source;
+  std::vector<unsigned int>  begin, source;
 };
 } // namespace coracle::benchmarks

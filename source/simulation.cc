@@ -141,8 +141,8 @@ private:
     add("dimension", std::to_string(dim));
     add("ranks", std::to_string(mpi::n_ranks(comm)));
     add("grid",
-        std::to_string(mpi::sum<std::uint64_t>(octree.n_owned_leaves(), comm)) + " cells, smallest " +
-          with_unit(octree.smallest_cell_size(), "m"));
+        std::to_string(mpi::sum<std::uint64_t>(octree.n_owned_leaves(), comm)) +
+          " cells, smallest " + with_unit(octree.smallest_cell_size(), "m"));
     for (const auto &body : coupling.points.bodies)
       add("body",
           "'" + body.name() + "', material points: " +
@@ -207,7 +207,7 @@ run(const RunOptions &options, MPI_Comm comm)
   file.read(options.file);
   for (const std::string &assignment : options.assignments)
     file.set(assignment);
-  return file.parameters().choice("Dimension") == "2" ? run_case<2>(file, options, comm) :
-                                                        run_case<3>(file, options, comm);
+  return file.parameters().choice("Dimension") == "2" ? run_case<2>(file, options, comm)
+                                                      : run_case<3>(file, options, comm);
 }
 } // namespace coracle

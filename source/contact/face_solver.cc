@@ -8,8 +8,9 @@ namespace coracle::contact
 namespace
 {
 /// The residual on the face is brought down to this part before the next sweep.
-constexpr double       reduction  = 0.05;
-constexpr unsigned int most_steps = 40;
+constexpr double       reduction   = 0.05;
+constexpr unsigned int least_steps = 4;
+constexpr unsigned int most_steps  = 64;
 /// Length of the expansion step; it must stay below 2 for the true largest eigenvalue.
 constexpr double expansion = 1.5;
 
@@ -56,6 +57,7 @@ FaceSolver<dim>::reinit(const Delassus<dim> &delassus)
   face.resize(rows.size());
   delassus.set_zero(zero);
   stiffness = 1;
+  n_steps   = least_steps;
 }
 
 template <int dim>
@@ -264,18 +266,47 @@ FaceSolver<dim>::improve(Delassus<dim>             &delassus,
                          std::vector<Vector>       &impulses,
                          Velocities<dim>           &v)
 {
-  start_face(delassus, target, friction, impulses, v);
-  const double enough = reduction * reduction * rho;
-  unsigned int steps  = 0;
-  while (steps < most_steps && rho > enough && largest > goal)
+  const auto &rows = delassus.rows();
+  static bool have = false; (void)have;
+  unsigned int steps = 0;
+  if (stiffness == 1)
     {
-      ++steps;
-      if (!take_step(delassus, friction, impulses, v))
+      for (std::size_t c = 0; c < rows.size(); ++c) direction[c] = rows[c].fixed ? Vector() : (1.+0.3*((c*2654435761u>>7)%17-8.)/8.)*rows[c].normal;
+      for (int k = 0; k < 12; ++k, ++steps)
         {
-          expand(delassus, target, friction, impulses, v);
-          start_face(delassus, target, friction, impulses, v);
-          ++steps;
+          respond(delassus, direction);
+          double a=0,b=0;
+          for (std::size_t c = 0; c < rows.size(); ++c) if(!rows[c].fixed){
+            const double q = delassus.relative_velocity(rows[c], response) * rows[c].normal / rows[c].true_inverse_mass;
+            const double d = direction[c]*rows[c].normal; a += q*q*rows[c].true_inverse_mass; b += d*d*rows[c].true_inverse_mass; direction[c] = q*rows[c].normal; }
+          stiffness = std::sqrt(a/b);
+          for (auto &d: direction) d /= stiffness;
         }
+      stiffness *= 1.1;
+    }
+  std::vector<Vector> y = impulses;
+  Velocities<dim> vy = v, vn;
+  double t = 1;
+  for (unsigned int k = 0; k < 60; ++k)
+    {
+      double s = 0, big = 0;
+      for (std::size_t c = 0; c < rows.size(); ++c)
+        {
+          change[c]=Vector(); if (rows[c].fixed) continue;
+          const Vector next = next_impulse<dim>(rows[c], y[c], delassus.relative_velocity(rows[c], vy), target[c], friction, 1/stiffness*rows[c].normal_inverse_mass/rows[c].true_inverse_mass);
+          change[c] = next - y[c];
+          s -= (change[c]*(next-impulses[c]))*rows[c].true_inverse_mass;
+          big = std::max(big, change[c].norm()*rows[c].true_inverse_mass*stiffness);
+        }
+      respond(delassus, change); ++steps;
+      vn = vy; add_scaled(vn, 1., response);
+      const double tn = 0.5*(1+std::sqrt(1+4*t*t));
+      double beta = (t-1)/tn; t = tn;
+      if (s > 0) { t = 1; beta = 0; }
+      for (std::size_t c = 0; c < rows.size(); ++c)
+        { const Vector next = y[c]+change[c]; y[c] = next + beta*(next-impulses[c]); impulses[c]=next; }
+      vy = vn; add_scaled(vy, beta, vn); add_scaled(vy, -beta, v); v = vn;
+      if (big < goal) break;
     }
   return steps;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/contact/initial_overlaps.h>
 #include <coracle/coupling/contact_coupling.h>
+
+#include <sstream>
 
 namespace coracle
 {
@@ -10,14 +13,13 @@ template <int dim>
 using Layout = ParticleLayout<dim>;
 
 // Keys of grid nodes start where no structure node's key can be.
-constexpr std::uint64_t first_grid_key = std::uint64_t(1) << 63;
+constexpr std::uint64_t first_grid_key = std::uint64_t(1) << 62;
 constexpr unsigned int  field_shift    = 48;
 } // namespace
 
 template <int dim>
 ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm)
-  : comm(comm)
-  , system(options, comm)
+  : comm(comm), system(options, comm)
 {}
 
 template <int dim>
@@ -30,10 +32,10 @@ ContactCoupling<dim>::make_point_sets(MaterialPointSystem<dim> &points, const bo
   unsigned int s = 0;
   for (auto &body : points.bodies)
     {
-      auto                    &set = sets[s];
-      const MaterialPoints<dim> &p = body.points;
-      set.n_points                 = p.n_rows();
-      set.mass                     = p.column(Layout<dim>::mass);
+      auto                      &set = sets[s];
+      const MaterialPoints<dim> &p   = body.points;
+      set.n_points                   = p.n_rows();
+      set.mass                       = p.column(Layout<dim>::mass);
       for (int d = 0; d < dim; ++d)
         {
           set.position[d] = p.column(Layout<dim>::position + d);
@@ -88,8 +90,8 @@ ContactCoupling<dim>::for_each_node(const MaterialPointSystem<dim> &points,
                    const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
                    for (int c = 0; c < (1 << dim); ++c)
                      {
-                       const unsigned int node   = octree.nodes(leaf)[c];
-                       const double       weight = fraction * shape.value[c];
+                       const unsigned int node    = octree.nodes(leaf)[c];
+                       const double       weight  = fraction * shape.value[c];
                        const int          hanging = octree.hanging_index(node);
                        if (hanging < 0)
                          action(node, weight);
@@ -106,7 +108,7 @@ ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
                             StructureSystem<dim>     &structure,
                             const double              dt)
 {
-  const unsigned int n_nodes = points.octree.n_nodes();
+  const unsigned int             n_nodes = points.octree.n_nodes();
   std::vector<NodalField<dim> *> fields;
   for (auto &field : points.fields)
     fields.push_back(&field);
@@ -125,7 +127,8 @@ ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
       contact::Unknown<dim> unknown;
       unknown.velocity     = fields[field]->velocity(node);
       unknown.inverse_mass = fields[field]->inverse_mass(node);
-      unknown.key   = first_grid_key + (std::uint64_t(field) << field_shift) + points.octree.global_node(node);
+      unknown.key =
+        first_grid_key + (std::uint64_t(field) << field_shift) + points.octree.global_node(node);
       unknown.owner = points.octree.node_owner(node);
       return unknown;
     });
@@ -150,14 +153,73 @@ ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
 
 template <int dim>
 void
-ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &, StructureSystem<dim> &)
-{}
+ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure)
+{
+  // The sets as they were searched, at the places the particles are about to take.
+  unsigned int s = 0;
+  for (const auto &body : points.bodies)
+    {
+      for (int d = 0; d < dim; ++d)
+        sets[s].position[d] = body.points.column(Layout<dim>::next_position + d);
+      ++s;
+    }
+  penetrations += system.audit(structure.publish_surface(), sets);
+}
+
 template <int dim>
 void
-ContactCoupling<dim>::refuse_initial_overlaps(const Parameters &,
-                               MaterialPointSystem<dim> &,
-                               StructureSystem<dim>     &)
-{}
+ContactCoupling<dim>::refuse_initial_overlaps(const Parameters         &root,
+                                              MaterialPointSystem<dim> &points,
+                                              StructureSystem<dim>     &structure)
+{
+  make_point_sets(points, true);
+  const auto          mine = contact::initial_overlaps(structure.publish_surface(), sets, comm);
+  const std::uint64_t n    = mpi::sum<std::uint64_t>(mine.size(), comm);
+  if (n == 0)
+    return;
+
+  // Rank by rank the deepest one; the message tells of the deepest of all.
+  std::array<double, 4 + dim> deepest{};
+  for (const auto &overlap : mine)
+    if (overlap.depth > deepest[0])
+      {
+        deepest[0] = overlap.depth;
+        deepest[1] = overlap.id;
+        deepest[2] = overlap.set;
+        deepest[3] = overlap.body;
+        for (int d = 0; d < dim; ++d)
+          deepest[4 + d] = overlap.place[d];
+      }
+  for (const auto &other : dealii::Utilities::MPI::all_gather(comm, deepest))
+    if (other[0] > deepest[0])
+      deepest = other;
+
+  const std::string  body           = std::next(points.bodies.begin(), deepest[2])->name();
+  const std::string  structure_name = structure.body_name(deepest[3]);
+  std::ostringstream found, cure;
+  found << n << (n == 1 ? " particle of '" : " particles of '") << body << "' in or too near to '"
+        << structure_name << "'; the deepest is number " << static_cast<std::uint64_t>(deepest[1])
+        << " at (";
+  for (int d = 0; d < dim; ++d)
+    found << (d > 0 ? ", " : "") << deepest[4 + d];
+  found << ") m, ";
+  if (std::isfinite(deepest[0]))
+    {
+      found << deepest[0] << " m nearer than the contact distance";
+      cure << "move '" << structure_name << "' away by " << deepest[0] << " m";
+    }
+  else
+    {
+      found << "deep inside";
+      cure << "move '" << structure_name << "' out of '" << body << "'";
+    }
+  throw root.section("Bodies").section(body).error("",
+                                                   "particles start inside a structure",
+                                                   found.str(),
+                                                   cure.str() + ", or shrink the region of '" +
+                                                     body + "'");
+}
+
 template class ContactCoupling<2>;
 template class ContactCoupling<3>;
 } // namespace coracle

@@ -50,12 +50,14 @@ Coupling<dim>::declare(Declaration &root)
   OctreeDescription<dim>::declare(grid);
   BoxBoundary<dim>::declare(grid);
   MaterialLibrary::declare(root);
-  Declaration &body = root.named_sections("Bodies", "body", "Everything that moves, each with a name.");
-  body.choice("Kind",
-              "material points",
-              {"material points", "solid", "rigid"},
-              "material points: fluid, or solid that deforms without limit; solid: finite elements; "
-              "rigid: a mesh that keeps its shape.");
+  Declaration &body =
+    root.named_sections("Bodies", "body", "Everything that moves, each with a name.");
+  body.choice(
+    "Kind",
+    "material points",
+    {"material points", "solid", "rigid"},
+    "material points: fluid, or solid that deforms without limit; solid: finite elements; "
+    "rigid: a mesh that keeps its shape.");
   MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
   SolidBody<dim>::declare(body.when("Kind", "solid"));
   RigidBody<dim>::declare(body.when("Kind", "rigid"));

@@ -40,12 +40,14 @@ check_inside_box(const Parameters &body, const dealii::BoundingBox<dim> &box)
         continue;
       std::ostringstream found;
       found << "'" << body.name() << "' reaches from " << extent.lower_bound(d) << " m to "
-            << extent.upper_bound(d) << " m in direction " << "xyz"[d] << ", the grid's box from "
-            << box.lower_bound(d) << " m to " << box.upper_bound(d) << " m";
-      throw body.error("Shape",
-                       "a body lies outside the box",
-                       found.str(),
-                       "move or shrink the body, or enlarge Grid/Lower corner and Grid/Upper corner");
+            << extent.upper_bound(d) << " m in direction "
+            << "xyz"[d] << ", the grid's box from " << box.lower_bound(d) << " m to "
+            << box.upper_bound(d) << " m";
+      throw body.error(
+        "Shape",
+        "a body lies outside the box",
+        found.str(),
+        "move or shrink the body, or enlarge Grid/Lower corner and Grid/Upper corner");
     }
 }
 } // namespace
@@ -56,11 +58,12 @@ MaterialPointBody<dim>::declare(Declaration &body)
 {
   GenerationSettings::declare(body);
   body.text("Material", "", "Name of one of the sections in Materials.");
-  body.text("Velocity field",
-            "common",
-            "Bodies with the same word here meet without slip and without passing through each "
-            "other, as in plain MPM; bodies of different fields do not feel each other on the grid. "
-            "Two fluids on the two sides of a wall need different fields.");
+  body.text(
+    "Velocity field",
+    "common",
+    "Bodies with the same word here meet without slip and without passing through each "
+    "other, as in plain MPM; bodies of different fields do not feel each other on the grid. "
+    "Two fluids on the two sides of a wall need different fields.");
   body.list("Initial velocity", "", "m/s", "v_0", "Of all particles; empty is rest.");
   body.function("Initial velocity function",
                 "",
@@ -75,24 +78,28 @@ MaterialPointBody<dim>::declare(Declaration &body)
                 "",
                 "m/s^2",
                 "Acceleration besides gravity, one expression for each direction.");
-  body.choice("Shape functions",
-              "linear",
-              {"linear", "gimp"},
-              "linear: a particle's mass sits at its centre; gimp: it is spread over the particle's "
-              "box, which is smoother when particles cross cell faces and costs more.");
-  body.choice("Velocity transfer",
-              "flip",
-              {"flip", "apic"},
-              "flip: particles take the change of the grid's velocity; apic: the velocity itself and "
-              "its gradient, smoother and more dissipative.");
-  body.quantity("PIC fraction",
-                "0.05",
-                "1",
-                "alpha_PIC",
-                "flip only: share of the grid's velocity itself in a particle's new velocity; damps "
-                "what the grid does not see.",
-                0.,
-                1.);
+  body.choice(
+    "Shape functions",
+    "linear",
+    {"linear", "gimp"},
+    "linear: a particle's mass sits at its centre; gimp: it is spread over the particle's "
+    "box, which is smoother when particles cross cell faces and costs more.");
+  body.choice(
+    "Velocity transfer",
+    "flip",
+    {"flip", "apic"},
+    "flip: particles take the change of the grid's velocity; apic: the velocity itself and "
+    "its gradient, smoother and more dissipative.");
+  body.quantity(
+    "PIC fraction",
+    "0.1",
+    "1",
+    "alpha_PIC",
+    "flip only: share of the grid's velocity itself in a particle's new velocity, for a "
+    "step as long as is stable in the body's cells, and less for shorter steps; damps "
+    "what the grid does not see.",
+    0.,
+    1.);
   body.choice("Stress update",
               "musl",
               {"musl", "usf", "usl"},
@@ -103,9 +110,10 @@ MaterialPointBody<dim>::declare(Declaration &body)
               {"cell mean", "particle"},
               "cell mean: all particles of a cell share the mean of their volume strain rates, "
               "which keeps nearly incompressible material from locking and from pressure noise.");
-  body.flag("Mean pressure in forces",
-            false,
-            "Internal forces from the mean pressure of a cell's particles instead of each one's own.");
+  body.flag(
+    "Mean pressure in forces",
+    false,
+    "Internal forces from the mean pressure of a cell's particles instead of each one's own.");
   body.quantity("Contact radius",
                 "0.5",
                 "1",
@@ -113,7 +121,8 @@ MaterialPointBody<dim>::declare(Declaration &body)
                 "Radius of a particle for contact, over its size.",
                 0.,
                 2.);
-  body.quantity("Damping", "0", "1/s", "c", "Mass-proportional damping: velocities decay as exp(-c t).", 0.);
+  body.quantity(
+    "Damping", "0", "1/s", "c", "Mass-proportional damping: velocities decay as exp(-c t).", 0.);
   body.quantity("Damping until", "1e300", "s", "", "Time at which damping ends.");
 }
 
@@ -124,8 +133,8 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
                                           const int              n_sheets)
   : points(body.name(), find_needs(materials.get(body.text("Material"), body), body, n_sheets))
   , material(materials.get(body.text("Material"), body))
-  , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle :
-                                                               VolumeStrain::cell_mean)
+  , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle
+                                                             : VolumeStrain::cell_mean)
   , field_name(body.text("Velocity field"))
   , radius_factor(body.quantity("Contact radius"))
   , damping_rate(body.quantity("Damping"))
@@ -138,9 +147,9 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
   transfer.pic_fraction     = body.quantity("PIC fraction");
   transfer.average_pressure = body.flag("Mean pressure in forces");
   const std::string update  = body.choice("Stress update");
-  stress_update = update == "usf" ? StressUpdate::usf :
-                  update == "usl" ? StressUpdate::usl :
-                                    StressUpdate::musl;
+  stress_update             = update == "usf"   ? StressUpdate::usf
+                              : update == "usl" ? StressUpdate::usl
+                                                : StressUpdate::musl;
   if (body.is_set("Body force"))
     body_force = body.function<dim>("Body force", dim);
   generate(body, octree);
@@ -150,15 +159,17 @@ template <int dim>
 void
 MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octree)
 {
-  using Layout        = ParticleLayout<dim>;
+  using Layout         = ParticleLayout<dim>;
   const double density = std::visit([](const auto &m) { return m.reference_density(); }, material);
   const auto   is_mine = [&octree](const dealii::Point<dim> &x) {
     const int leaf = octree.find(x);
     return leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves());
   };
   check_inside_box(body, octree.box());
-  const auto made = generate_particles<dim>(
-    body, is_mine, octree.owned_region(), octree.triangulation.get_communicator());
+  const auto   made = generate_particles<dim>(body,
+                                            is_mine,
+                                            octree.owned_region(),
+                                            octree.triangulation.get_communicator());
   const double size = std::pow(made.volume, 1. / dim);
 
   const std::vector<double>              constant = body.list("Initial velocity");
@@ -178,8 +189,9 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
         {
           points.column(Layout::position + d)[row]      = made.positions[row][d];
           points.column(Layout::next_position + d)[row] = made.positions[row][d];
-          points.column(Layout::velocity + d)[row] =
-            varying ? varying->value(made.positions[row], d) : (constant.empty() ? 0. : constant[d]);
+          points.column(Layout::velocity + d)[row]      = varying
+                                                            ? varying->value(made.positions[row], d)
+                                                            : (constant.empty() ? 0. : constant[d]);
         }
       points.column(Layout::mass)[row]    = density * made.volume;
       points.column(Layout::density)[row] = density;
@@ -197,8 +209,10 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
       double square = 0;
       for (int d = 0; d < dim; ++d)
         square += std::pow(points.column(Layout::velocity + d)[row], 2);
-      const double c = std::visit(
-        [&](const auto &m) { return m.sound_speed(points.column(Layout::density)[row]); }, material);
+      const double c =
+        std::visit([&](
+                     const auto &m) { return m.sound_speed(points.column(Layout::density)[row]); },
+                   material);
       const double h = octree.size(octree.find(points.position(row)));
       largest_rate   = std::max(largest_rate, (c + std::sqrt(square)) / h);
       sweep.diffusion_rate =

@@ -78,6 +78,16 @@ MaterialPointSystem<dim>::field(const MaterialPointBody<dim> &body)
   return *std::next(fields.begin(), body.field);
 }
 
+// Nodes need the momenta of all bodies of their field, or none.
+template <int dim>
+bool
+MaterialPointSystem<dim>::shares_musl_field(const MaterialPointBody<dim> &body) const
+{
+  return std::any_of(bodies.begin(), bodies.end(), [&body](const auto &other) {
+    return other.field == body.field && other.stress_update == StressUpdate::musl;
+  });
+}
+
 template <int dim>
 double
 MaterialPointSystem<dim>::stable_time_step() const
@@ -86,7 +96,8 @@ MaterialPointSystem<dim>::stable_time_step() const
   for (const auto &body : bodies)
     {
       rate = std::max(rate, body.sweep.rate);
-      // h / c and h^2 / (2 dim nu) are limits of their own: the sum of their inverses is on the safe side.
+      // h / c and h^2 / (2 dim nu) are limits of their own: the sum of their inverses is on the
+      // safe side.
       rate = std::max(rate, body.sweep.rate + 2 * dim * body.sweep.diffusion_rate);
     }
   rate = mpi::max(rate, octree.triangulation.get_communicator());
@@ -101,7 +112,9 @@ MaterialPointSystem<dim>::gather(const double time, const double dt)
     f.clear();
   for (auto &body : bodies)
     {
-      energy.damping += body.damp(time, dt);
+      const double damped = body.damp(time, dt);
+      energy.damping += damped;
+      energy.kinetic -= damped;
       const Give give =
         body.stress_update == StressUpdate::usf ? Give::mass_and_momentum : Give::everything;
       particles_to_grid(octree, body.points, body.transfer, give, field(body));
@@ -134,7 +147,9 @@ MaterialPointSystem<dim>::gather(const double time, const double dt)
 
 template <int dim>
 void
-MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt)
+MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body,
+                                          const double            time,
+                                          const double            dt)
 {
   using Layout   = ParticleLayout<dim>;
   using Gathered = typename NodalField<dim>::Gathered;
@@ -151,18 +166,19 @@ MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body, const do
           {
             force[d] = m * body.body_force->value(x, d);
             energy.external_work +=
-              dt * force[d] *
-              (points.column(Layout::velocity + d)[row] + 0.5 * dt * force[d] / m);
+              dt * force[d] * (points.column(Layout::velocity + d)[row] + 0.5 * dt * force[d] / m);
           }
         const double half = body.margin_of_shape() * points.column(Layout::size)[row];
-        for_each_piece(
-          octree, x, half, [&](const int leaf, const auto &piece, const double fraction) {
-            const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
-            for (int c = 0; c < (1 << dim); ++c)
-              for (int d = 0; d < dim; ++d)
-                records[octree.nodes(leaf)[c]][Gathered::force + d] +=
-                  fraction * shape.value[c] * force[d];
-          });
+        for_each_piece(octree,
+                       x,
+                       half,
+                       [&](const int leaf, const auto &piece, const double fraction) {
+                         const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
+                         for (int c = 0; c < (1 << dim); ++c)
+                           for (int d = 0; d < dim; ++d)
+                             records[octree.nodes(leaf)[c]][Gathered::force + d] +=
+                               fraction * shape.value[c] * force[d];
+                       });
       }
 }
 
@@ -197,12 +213,16 @@ MaterialPointSystem<dim>::move(const double dt)
     }
   // Lost to the grid and back: (particles - gathered) before, (given - particles) after the step.
   energy.transfer += energy.kinetic;
-  for (auto &body : bodies)
-    grid_to_particles(
-      octree, body.transfer, dt, body.stress_update == StressUpdate::musl, field(body), body.points);
   energy.kinetic = 0;
-  for (const auto &body : bodies)
-    energy.kinetic += body.points.kinetic_energy();
+  for (auto &body : bodies)
+    {
+      // The fraction is meant for a stable step, so that shorter steps do not damp more.
+      TransferOptions transfer = body.transfer;
+      transfer.pic_fraction =
+        1. - std::pow(1. - body.transfer.pic_fraction, std::min(1., dt * body.sweep.rate));
+      const bool remap = body.stress_update == StressUpdate::musl;
+      energy.kinetic += grid_to_particles(octree, transfer, dt, remap, field(body), body.points);
+    }
   energy.transfer -= energy.kinetic;
 }
 
@@ -230,7 +250,8 @@ MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
       std::ostringstream details;
       details << "particle " << points.id(body.sweep.bad_row) << " of '" << body.name() << "' at ("
               << points.position(body.sweep.bad_row) << ") m, t = " << time << " s: density "
-              << points.column(ParticleLayout<dim>::density)[body.sweep.bad_row] << " kg/m^3, stress "
+              << points.column(ParticleLayout<dim>::density)[body.sweep.bad_row]
+              << " kg/m^3, stress "
               << points.column(ParticleLayout<dim>::stress)[body.sweep.bad_row] << " Pa";
       failure.emplace("the state of a particle is no longer physical",
                       details.str(),

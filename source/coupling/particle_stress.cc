@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/coupling/particle_stress.h>
+#include <coracle/material/rotation.h>
 
 namespace coracle
 {
@@ -23,7 +24,9 @@ public:
   const double         dt;
   MaterialPoints<dim> &points;
   StressSweep          result{};
-  double               smallest_density = std::numeric_limits<double>::max();
+  Pack8 work{}, kinetic{}, smallest_density = splat<Pack8>(std::numeric_limits<double>::max());
+  /// Of the cell at hand: square of the largest particle speed, largest wave speed.
+  Pack8 speed_square{}, wave_speed{};
   /// Velocity gradients of one cell's particles, kept while their mean is formed.
   std::vector<Matrix<dim, Pack8>> gradients{};
 
@@ -35,7 +38,10 @@ public:
       sweep_cell(leaf);
     for (const auto &stray : points.strays)
       sweep_stray(stray);
-    if (!std::isfinite(result.work) || !std::isfinite(result.rate) || !(smallest_density > 0))
+    result.work    = sum(work);
+    result.kinetic = sum(kinetic);
+    if (!std::isfinite(result.work + result.kinetic) || !std::isfinite(result.rate) ||
+        !(-largest(Pack8(-smallest_density)) > 0))
       find_bad_row();
   }
 
@@ -98,9 +104,7 @@ private:
           {
             const Pack8 v = load<Pack8>(points.column(Layout::mass) + row) /
                             load<Pack8>(points.column(Layout::density) + row);
-            Mask8 counted = inside(leaf, row, x);
-            for (int l = end - row; l < pack_size; ++l)
-              counted[l] = 0;
+            const Mask8 counted = inside(leaf, row, x) & first_lanes(end - row);
             weights += select(counted, v, Pack8{});
             divergences += select(counted, Pack8(v * trace<dim, Pack8>(gradients[k])), Pack8{});
           }
@@ -114,8 +118,19 @@ private:
     for (unsigned int row = begin, k = 0; row < end; row += pack_size, ++k)
       {
         const Mask8 here = inside(leaf, row, load_vector(points, Layout::position, row));
-        update_rows(row, std::min<unsigned int>(pack_size, end - row), here, size, mean, gradients[k]);
+        update_rows(
+          row, std::min<unsigned int>(pack_size, end - row), here, size, mean, gradients[k]);
       }
+    end_cell(size);
+  }
+
+  // One square root a cell. Comparisons turn a NaN into 0 here; the sums find it.
+  void end_cell(const double size)
+  {
+    const double rate     = (largest(wave_speed) + std::sqrt(largest(speed_square))) / size;
+    result.rate           = std::max(result.rate, rate);
+    result.diffusion_rate = std::max(result.diffusion_rate, material.diffusivity() / (size * size));
+    speed_square = wave_speed = Pack8{};
   }
 
   Matrix<dim, double> stray_gradient(const typename MaterialPoints<dim>::Stray &stray) const
@@ -152,6 +167,7 @@ private:
                 octree.size(stray.leaf),
                 cell_mean ? points.means.mean(stray.leaf) : 0.,
                 l);
+    end_cell(octree.size(stray.leaf));
   }
 
   // Rows row ... row + n_lanes - 1 where `here`; the other lanes are computed and thrown away.
@@ -187,7 +203,7 @@ private:
     if constexpr (Material::isotropic_stress)
       {
         double *const pressure = points.column(Layout::stress) + row;
-        const Pack8   before = load<Pack8>(pressure), after = material.template pressure<dim>(motion);
+        const Pack8 before = load<Pack8>(pressure), after = material.template pressure<dim>(motion);
         store_first(pressure, select(here, after, before), n_lanes);
         power = -0.5 * (before + after) * divergence;
       }
@@ -200,27 +216,26 @@ private:
         const Pack8 v = load<Pack8>(points.column(Layout::velocity + d) + row);
         square += v * v;
       }
-    Mask8 counted = here & (mass > 0.);
-    for (int l = n_lanes; l < pack_size; ++l)
-      counted[l] = 0;
-    const Pack8 rate = (material.sound_speed(motion.density) + sqrt(square)) / size;
-    result.kinetic += sum(select(counted, Pack8(0.5 * mass * square), Pack8{}));
-    result.work += sum(select(counted, Pack8(dt * mid_volume * power), Pack8{}));
-    const Pack8 counted_rate    = select(counted, rate, Pack8{});
-    const Pack8 counted_density = select(counted, motion.density, splat<Pack8>(1e300));
-    for (int l = 0; l < pack_size; ++l)
-      {
-        result.rate      = std::max(result.rate, counted_rate[l]);
-        smallest_density = std::min(smallest_density, counted_density[l]);
-      }
-    result.diffusion_rate =
-      std::max(result.diffusion_rate, material.diffusivity() / (size * size));
+    const Mask8 counted = here & (mass > 0.) & first_lanes(n_lanes);
+    work += select(counted, Pack8(dt * mid_volume * power), Pack8{});
+    kinetic += select(counted, Pack8(0.5 * mass * square), Pack8{});
+    speed_square = select(counted, max(speed_square, square), speed_square);
+    wave_speed =
+      select(counted,
+             max(wave_speed, Pack8(splat<Pack8>(0.) + material.sound_speed(motion.density))),
+             wave_speed);
+    // Written so that a NaN replaces what is there.
+    smallest_density =
+      select(counted & ~(motion.density >= smallest_density), motion.density, smallest_density);
   }
 
   // F <- (1 + dt L) F, with the third diagonal entry of plane strain equal to one.
-  void update_deformation(const std::size_t row, const int n_lanes, const Mask8 &here, Motion<dim, Pack8> &motion)
+  void update_deformation(const std::size_t   row,
+                          const int           n_lanes,
+                          const Mask8        &here,
+                          Motion<dim, Pack8> &motion)
   {
-    Matrix<dim, Pack8> step = identity<dim, Pack8>(), f;
+    Matrix<dim, Pack8> step  = identity<dim, Pack8>(), f;
     const int          first = points.layout().deformation_gradient;
     for (int d = 0; d < dim; ++d)
       for (int e = 0; e < dim; ++e)
@@ -236,12 +251,14 @@ private:
                     n_lanes);
   }
 
-  Pack8 update_tensor(const std::size_t         row,
-                      const int                 n_lanes,
-                      const Mask8              &here,
-                      const Motion<dim, Pack8> &motion)
+  Pack8 update_tensor(const std::size_t   row,
+                      const int           n_lanes,
+                      const Mask8        &here,
+                      Motion<dim, Pack8> &motion)
   {
-    constexpr int         n = Symmetric<dim, Pack8>::size;
+    // The grid gives the gradient at the step's start; rate forms ask for the middle.
+    motion.velocity_gradient = mid_step_gradient<dim, Pack8>(motion.velocity_gradient, dt);
+    constexpr int         n  = Symmetric<dim, Pack8>::size;
     Symmetric<dim, Pack8> before, after;
     for (int k = 0; k < n; ++k)
       before[k] = load<Pack8>(points.column(Layout::stress + k) + row);
@@ -252,7 +269,9 @@ private:
     old_history = history;
     material.template update<dim>(motion, after, history.data());
     for (int k = 0; k < n; ++k)
-      store_first(points.column(Layout::stress + k) + row, select(here, after[k], before[k]), n_lanes);
+      store_first(points.column(Layout::stress + k) + row,
+                  select(here, after[k], before[k]),
+                  n_lanes);
     for (int k = 0; k < Material::n_history; ++k)
       store_first(points.column(points.layout().history + k) + row,
                   select(here, history[k], old_history[k]),
@@ -332,16 +351,16 @@ initialise_particle_stress(const MaterialVariant &material, MaterialPoints<dim> 
     material);
 }
 
-#define INSTANTIATE(dim)                                                         \
-  template StressSweep update_particle_stress(const Octree<dim> &,               \
-                                              const NodeRecords &,               \
-                                              const unsigned int,                \
-                                              const MaterialVariant &,           \
-                                              const ParticleShape,               \
-                                              const VolumeStrain,                \
-                                              const double,                      \
-                                              MaterialPoints<dim> &);            \
-  template void initialise_particle_stress(const MaterialVariant &, MaterialPoints<dim> &);
+#define INSTANTIATE(dim)                                               \
+  template StressSweep update_particle_stress(const Octree<dim> &,     \
+                                              const NodeRecords &,     \
+                                              const unsigned int,      \
+                                              const MaterialVariant &, \
+                                              const ParticleShape,     \
+                                              const VolumeStrain,      \
+                                              const double,            \
+                                              MaterialPoints<dim> &);  \
+  template void        initialise_particle_stress(const MaterialVariant &, MaterialPoints<dim> &);
 
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -14,7 +14,8 @@ template <int dim>
 void
 BoxBoundary<dim>::declare(Declaration &grid)
 {
-  Declaration &section = grid.section("Boundaries", "What the faces of the box do to material points.");
+  Declaration &section =
+    grid.section("Boundaries", "What the faces of the box do to material points.");
   for (unsigned int face = 0; face < 2 * dim; ++face)
     section.choice(face_name(face),
                    "slip",
@@ -32,9 +33,9 @@ BoxBoundary<dim>::read(const Parameters &grid)
   for (unsigned int face = 0; face < 2 * dim; ++face)
     {
       const std::string word = section.choice(face_name(face));
-      result[face]           = word == "slip"  ? FaceCondition::slip :
-                               word == "stick" ? FaceCondition::stick :
-                                                 FaceCondition::open;
+      result[face]           = word == "slip"    ? FaceCondition::slip
+                               : word == "stick" ? FaceCondition::stick
+                                                 : FaceCondition::open;
     }
   return result;
 }
@@ -42,17 +43,15 @@ BoxBoundary<dim>::read(const Parameters &grid)
 template <int dim>
 BoxBoundary<dim>::BoxBoundary(const std::array<FaceCondition, 2 * dim> &conditions,
                               const Octree<dim>                        &octree)
-  : conditions(conditions)
-  , box(octree.box())
-  , flags(octree.n_nodes(), 0)
+  : conditions(conditions), box(octree.box()), flags(octree.n_nodes(), 0)
 {
   const double tolerance = 1e-6 * octree.smallest_cell_size();
   for (unsigned int node = 0; node < octree.n_nodes(); ++node)
     {
       for (unsigned int face = 0; face < 2 * dim; ++face)
         {
-          const unsigned int d = face / 2;
-          const double bound   = face % 2 == 0 ? box.lower_bound(d) : box.upper_bound(d);
+          const unsigned int d     = face / 2;
+          const double       bound = face % 2 == 0 ? box.lower_bound(d) : box.upper_bound(d);
           if (std::abs(octree.position(node)[d] - bound) > tolerance)
             continue;
           if (conditions[face] == FaceCondition::slip)

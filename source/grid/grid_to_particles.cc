@@ -36,21 +36,23 @@ public:
     , affine_column(points.layout().affine)
   {}
 
-  void run()
+  /// Kinetic energy of the particles afterwards.
+  double run()
   {
     for (const unsigned int leaf : points.occupied_cells())
       sweep_cell(leaf);
     for (const auto &stray : points.strays)
       sweep_stray(stray);
+    return sum(kinetic);
   }
 
 private:
   // Corner by corner, its record broadcast to all lanes.
-  void take(const PackShape<dim>                            &shape,
-            const double                                     inverse_size,
-            const std::array<unsigned int, (1 << dim)>      &nodes,
-            const bool                                       shifted,
-            Taken<dim, Pack8>                               &taken) const
+  void take(const PackShape<dim>                       &shape,
+            const double                                inverse_size,
+            const std::array<unsigned int, (1 << dim)> &nodes,
+            const bool                                  shifted,
+            Taken<dim, Pack8>                          &taken) const
   {
     for (int c = 0; c < (1 << dim); ++c)
       {
@@ -80,8 +82,8 @@ private:
   {
     Vector<dim, T> v;
     for (int d = 0; d < dim; ++d)
-      v[d] = affine ? taken.velocity[d] :
-                      (1. - pic) * (old[d] + taken.change[d]) + pic * taken.velocity[d];
+      v[d] = affine ? taken.velocity[d]
+                    : (1. - pic) * (old[d] + taken.change[d]) + pic * taken.velocity[d];
     return v;
   }
 
@@ -113,13 +115,15 @@ private:
         Taken<dim, Pack8> taken;
         take(PackShape<dim>(xi), inverse_size, nodes, shifted, taken);
 
-        const Vector<dim, Pack8> old = load_vector(points, Layout::velocity, row);
-        const Vector<dim, Pack8> v   = new_velocity(old, taken);
-        const int n_lanes            = std::min<unsigned int>(pack_size, end - row);
+        const Vector<dim, Pack8> old     = load_vector(points, Layout::velocity, row);
+        const Vector<dim, Pack8> v       = new_velocity(old, taken);
+        const int                n_lanes = std::min<unsigned int>(pack_size, end - row);
         for (int d = 0; d < dim; ++d)
           {
             // Strays keep their velocity here: they are taken care of below, with their own cell.
-            store_first(points.column(Layout::velocity + d) + row, select(here, v[d], old[d]), n_lanes);
+            store_first(points.column(Layout::velocity + d) + row,
+                        select(here, v[d], old[d]),
+                        n_lanes);
             store_first(points.column(Layout::next_position + d) + row,
                         Pack8(x[d] + dt * taken.velocity[d] + taken.shift[d]),
                         n_lanes);
@@ -129,16 +133,29 @@ private:
             for (int e = 0; e < dim; ++e)
               {
                 double *const column = points.column(affine_column + dim * d + e) + row;
-                store_first(column, select(here, taken.gradient[d][e], load<Pack8>(column)), n_lanes);
+                store_first(column,
+                            select(here, taken.gradient[d][e], load<Pack8>(column)),
+                            n_lanes);
               }
+        const Pack8 m = load<Pack8>(points.column(Layout::mass) + row);
+        Pack8       square{};
+        for (int d = 0; d < dim; ++d)
+          square += v[d] * v[d];
+        kinetic += select(Mask8(here & first_lanes(n_lanes)), Pack8(0.5 * m * square), Pack8{});
         if constexpr (remap)
           for (int l = 0; l < n_lanes; ++l)
             if (__builtin_expect(here[l] != 0, 1))
               {
-                Vector<dim, double> xi_l;
+                Vector<dim, double> xi_l, v_l;
                 for (int d = 0; d < dim; ++d)
-                  xi_l[d] = xi[d][l];
-                give_back(row + l, xi_l, size, 1., dealii::Tensor<1, dim>(), sums);
+                  {
+                    xi_l[d] = xi[d][l];
+                    v_l[d]  = v[d][l];
+                  }
+                if constexpr (affine)
+                  give_back(row + l, xi_l, size, 1., dealii::Tensor<1, dim>(), sums);
+                else
+                  sums.add_momentum(CornerShape<dim>(xi_l), m[l], v_l);
               }
       }
     if constexpr (remap)
@@ -147,10 +164,10 @@ private:
 
   void sweep_stray(const typename MaterialPoints<dim>::Stray &stray)
   {
-    const std::size_t     row    = stray.row;
-    const auto            centre = points.position(row);
-    const double          half   = gimp ? 0.5 * points.column(Layout::size)[row] : 0.;
-    Taken<dim, double>    taken;
+    const std::size_t  row    = stray.row;
+    const auto         centre = points.position(row);
+    const double       half   = gimp ? 0.5 * points.column(Layout::size)[row] : 0.;
+    Taken<dim, double> taken;
     for_each_piece(octree,
                    centre,
                    half,
@@ -160,6 +177,7 @@ private:
     const Vector<dim, double> v = new_velocity(get_vector(points, Layout::velocity, row), taken);
     for (int d = 0; d < dim; ++d)
       {
+        kinetic[0] += 0.5 * points.column(Layout::mass)[row] * v[d] * v[d];
         points.column(Layout::velocity + d)[row] = v[d];
         points.column(Layout::next_position + d)[row] =
           centre[d] + dt * taken.velocity[d] + taken.shift[d];
@@ -200,8 +218,8 @@ private:
             taken.change[d] += w * node[Motion::change + d];
             taken.shift[d] += w * field.shift(nodes[c])[d];
             for (int e = 0; e < dim; ++e)
-              taken.gradient[d][e] += fraction * shape.gradient[e][c] / octree.size(leaf) *
-                                      node[Motion::velocity + d];
+              taken.gradient[d][e] +=
+                fraction * shape.gradient[e][c] / octree.size(leaf) * node[Motion::velocity + d];
           }
       }
   }
@@ -240,11 +258,12 @@ private:
   const NodeRecords   &motion;
   MaterialPoints<dim> &points;
   const int            affine_column;
+  Pack8                kinetic{};
 };
 } // namespace
 
 template <int dim>
-void
+double
 grid_to_particles(const Octree<dim>     &octree,
                   const TransferOptions &options,
                   const double           dt,
@@ -254,25 +273,24 @@ grid_to_particles(const Octree<dim>     &octree,
 {
   const bool affine = points.layout().affine >= 0;
   if (affine && remap)
-    Sweep<dim, true, true>(octree, options, dt, field, points).run();
-  else if (affine)
-    Sweep<dim, true, false>(octree, options, dt, field, points).run();
-  else if (remap)
-    Sweep<dim, false, true>(octree, options, dt, field, points).run();
-  else
-    Sweep<dim, false, false>(octree, options, dt, field, points).run();
+    return Sweep<dim, true, true>(octree, options, dt, field, points).run();
+  if (affine)
+    return Sweep<dim, true, false>(octree, options, dt, field, points).run();
+  if (remap)
+    return Sweep<dim, false, true>(octree, options, dt, field, points).run();
+  return Sweep<dim, false, false>(octree, options, dt, field, points).run();
 }
 
-template void grid_to_particles(const Octree<2> &,
-                                const TransferOptions &,
-                                const double,
-                                const bool,
-                                NodalField<2> &,
-                                MaterialPoints<2> &);
-template void grid_to_particles(const Octree<3> &,
-                                const TransferOptions &,
-                                const double,
-                                const bool,
-                                NodalField<3> &,
-                                MaterialPoints<3> &);
+template double grid_to_particles(const Octree<2> &,
+                                  const TransferOptions &,
+                                  const double,
+                                  const bool,
+                                  NodalField<2> &,
+                                  MaterialPoints<2> &);
+template double grid_to_particles(const Octree<3> &,
+                                  const TransferOptions &,
+                                  const double,
+                                  const bool,
+                                  NodalField<3> &,
+                                  MaterialPoints<3> &);
 } // namespace coracle

@@ -15,7 +15,10 @@ using Layout = ParticleLayout<dim>;
 
 template <int dim>
 RunFailure
-lost(const MaterialPoints<dim> &points, const std::size_t row, const std::string &what, const double time)
+lost(const MaterialPoints<dim> &points,
+     const std::size_t          row,
+     const std::string         &what,
+     const double               time)
 {
   std::ostringstream details;
   details.precision(6);
@@ -45,8 +48,10 @@ take_positions(const Octree<dim> &octree, const double margin_of_shape, Material
           const Vector<dim, Pack8> next    = load_vector(points, Layout<dim>::next_position, row);
           for (int d = 0; d < dim; ++d)
             store_first(points.column(Layout<dim>::position + d) + row, next[d], n_lanes);
-          const Pack8 margin = margin_of_shape * load<Pack8>(points.column(Layout<dim>::size) + row);
-          const Mask8 inside = inside_cell<dim>(next, octree.lower(leaf), octree.size(leaf), margin);
+          const Pack8 margin =
+            margin_of_shape * load<Pack8>(points.column(Layout<dim>::size) + row);
+          const Mask8 inside =
+            inside_cell<dim>(next, octree.lower(leaf), octree.size(leaf), margin);
           for (int l = 0; l < n_lanes; ++l)
             if (__builtin_expect(inside[l] == 0, 0))
               leavers.push_back(row + l);
@@ -72,10 +77,10 @@ exchange_rows(const Octree<dim>                        &octree,
               const std::map<int, std::vector<double>> &outgoing,
               MaterialPoints<dim>                      &points)
 {
-  const MPI_Comm                    comm       = octree.triangulation.get_communicator();
-  const auto                       &neighbours = octree.triangulation.ghost_owners();
-  std::vector<MPI_Request>          requests;
-  static const std::vector<double>  nothing;
+  const MPI_Comm                   comm       = octree.triangulation.get_communicator();
+  const auto                      &neighbours = octree.triangulation.ghost_owners();
+  std::vector<MPI_Request>         requests;
+  static const std::vector<double> nothing;
   for (const int rank : neighbours)
     {
       const auto  found = outgoing.find(rank);
@@ -172,28 +177,31 @@ sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPo
     cell[stray.row] = stray.leaf;
   points.sort(octree.n_owned_leaves(), cell);
 
-  // A GIMP particle that reaches into a neighbour is a stray even in its home cell.
-  if (margin_of_shape > 0)
-    for (const unsigned int leaf : points.occupied_cells())
-      for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
-        {
-          const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
-          bool         inside = true;
-          for (int d = 0; d < dim; ++d)
-            {
-              const double x = points.column(Layout<dim>::position + d)[row];
-              inside = inside && x - margin >= octree.lower(leaf)[d] &&
-                       x + margin < octree.lower(leaf)[d] + octree.size(leaf);
-            }
-          if (!inside)
-            points.strays.push_back({row, static_cast<int>(leaf)});
-        }
+  // A GIMP particle that reaches into a neighbour is a stray even in its home cell, and so is any
+  // on the upper face of the box, which no cell's half-open range holds.
+  for (const unsigned int leaf : points.occupied_cells())
+    for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
+      {
+        const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
+        bool         inside = true;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double x = points.column(Layout<dim>::position + d)[row];
+            inside         = inside && x - margin >= octree.lower(leaf)[d] &&
+                     x + margin < octree.lower(leaf)[d] + octree.size(leaf);
+          }
+        if (!inside)
+          points.strays.push_back({row, static_cast<int>(leaf)});
+      }
 }
 
-#define INSTANTIATE(dim)                                                                    \
-  template unsigned int move_and_locate(                                                    \
-    const Octree<dim> &, const BoxBoundary<dim> &, const double, const double, MaterialPoints<dim> &); \
-  template void sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
+#define INSTANTIATE(dim)                                          \
+  template unsigned int move_and_locate(const Octree<dim> &,      \
+                                        const BoxBoundary<dim> &, \
+                                        const double,             \
+                                        const double,             \
+                                        MaterialPoints<dim> &);   \
+  template void         sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
 
 INSTANTIATE(2)
 INSTANTIATE(3)

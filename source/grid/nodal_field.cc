@@ -65,8 +65,6 @@ template <int dim>
 void
 NodalField<dim>::sum()
 {
-  if (octree.has_remote_hanging_nodes())
-    octree.exchange.sum_to_owners(records);
   condense(records);
   octree.exchange.sum_to_owners(records);
 }
@@ -77,8 +75,6 @@ NodalField<dim>::distribute()
 {
   octree.exchange.update_ghosts(motions);
   interpolate_hanging(motions);
-  if (octree.has_remote_hanging_nodes())
-    octree.exchange.update_ghosts(motions);
 }
 
 template <int dim>
@@ -97,8 +93,8 @@ NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
       const double inverse = 1. / mass;
       for (unsigned int d = 0; d < dim; ++d)
         {
-          const double before = r[Gathered::momentum + d] * inverse;
-          const double change = dt * (r[Gathered::force + d] * inverse + gravity[d]);
+          const double before     = r[Gathered::momentum + d] * inverse;
+          const double change     = dt * (r[Gathered::force + d] * inverse + gravity[d]);
           m[Motion::change + d]   = change;
           m[Motion::velocity + d] = before + change;
           books.gathered += 0.5 * mass * before * before;
@@ -248,8 +244,6 @@ NodalField<dim>::remap()
           records[i][Gathered::momentum + d] = 0;
   octree.exchange.update_ghosts(records);
   interpolate_hanging(records);
-  if (octree.has_remote_hanging_nodes())
-    octree.exchange.update_ghosts(records);
 }
 
 template <int dim>

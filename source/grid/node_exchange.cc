@@ -35,11 +35,9 @@ swap_blocks(const NodeRecord *const send_from,
 } // namespace
 
 void
-NodeExchange::reinit(const dealii::IndexSet &owned,
-                     const dealii::IndexSet &relevant,
-                     MPI_Comm                comm)
+NodeExchange::reinit(const dealii::IndexSet &owned, const dealii::IndexSet &relevant, MPI_Comm comm)
 {
-  partitioner = std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, relevant, comm);
+  partitioner  = std::make_shared<dealii::Utilities::MPI::Partitioner>(owned, relevant, comm);
   const int me = dealii::Utilities::MPI::this_mpi_process(comm);
   owners.assign(n_owned(), me);
   for (const auto &[rank, count] : partitioner->ghost_targets())

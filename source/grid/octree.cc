@@ -6,17 +6,17 @@
 
 #include <deal.II/lac/affine_constraints.h>
 
+#include <coracle/base/mpi.h>
 #include <coracle/grid/octree.h>
 
-#include <numeric>
-#include <sstream>
+#include <map>
 
 namespace coracle
 {
 template <int dim>
-Octree<dim>::Octree(const OctreeDescription<dim>                                         &description,
+Octree<dim>::Octree(const OctreeDescription<dim> &description,
                     const std::function<double(const dealii::Point<dim> &, const double)> &weight,
-                    MPI_Comm                                                              communicator)
+                    MPI_Comm communicator)
   : triangulation(communicator,
                   dealii::Triangulation<dim>::none,
                   dealii::parallel::distributed::Triangulation<dim>::default_setting)
@@ -41,7 +41,7 @@ Octree<dim>::make_grid()
   std::vector<unsigned int> n_cells(dim);
   for (unsigned int d = 0; d < dim; ++d)
     n_cells[d] = std::lround((upper[d] - lower[d]) / description.cell_size);
-  n_coarse_cells = n_cells;
+  n_coarse_cells      = n_cells;
   const auto all_even = [&] {
     return std::all_of(n_coarse_cells.begin(), n_coarse_cells.end(), [](const unsigned int n) {
       return n % 2 == 0;
@@ -90,8 +90,8 @@ Octree<dim>::partition(
   const auto connection =
     triangulation.signals.weight.connect([&](const typename Triangulation::cell_iterator &cell,
                                              const typename Triangulation::CellStatus) {
-      return static_cast<unsigned int>(
-        1000. * weight(cell->center(), cell->extent_in_direction(0)));
+      return static_cast<unsigned int>(1000. *
+                                       weight(cell->center(), cell->extent_in_direction(0)));
     });
   triangulation.repartition();
   connection.disconnect();
@@ -123,7 +123,7 @@ Octree<dim>::enumerate()
   std::copy(n_coarse_cells.begin(), n_coarse_cells.end(), n.begin());
   const auto  &corners     = description.box.get_boundary_points();
   const double coarse_size = std::ldexp(description.cell_size, base_level);
-  tree.reinit(corners.first, coarse_size, n);
+  tree.reinit(corners.first, corners.second, n);
 
   leaf_of_active_cell.assign(triangulation.n_active_cells(), -1);
   std::vector<dealii::types::global_dof_index> dofs(n_corners);
@@ -146,42 +146,112 @@ Octree<dim>::enumerate()
     }
 }
 
+// Parents of the hanging nodes between leaves that this rank knows.
 template <int dim>
-void
-Octree<dim>::make_hanging_nodes()
+std::vector<typename Octree<dim>::Parent>
+Octree<dim>::find_parents() const
 {
   dealii::IndexSet relevant;
   dealii::DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
   dealii::AffineConstraints<double> constraints(relevant);
   dealii::DoFTools::make_hanging_node_constraints(dof_handler, constraints);
   constraints.close();
-  node_to_hanging.assign(n_nodes(), -1);
+  std::vector<Parent> result;
   for (const auto &line : constraints.get_lines())
+    for (const auto &[node, weight] : line.entries)
+      {
+        Assert(relevant.is_element(line.index) && relevant.is_element(node),
+               dealii::ExcInternalError());
+        Parent parent{line.index, node, weight, {}};
+        for (unsigned int d = 0; d < dim; ++d)
+          parent.place[d] = positions[exchange.indices().global_to_local(node)][d];
+        result.push_back(parent);
+      }
+  return result;
+}
+
+// Nodes on the far side of ghost leaves may hang on leaves that this rank does not know. Their
+// owners know, and tell all that have such a node as a ghost.
+template <int dim>
+std::vector<typename Octree<dim>::Parent>
+Octree<dim>::find_far_parents(const std::vector<Parent> &known) const
+{
+  std::multimap<dealii::types::global_dof_index, Parent> parents;
+  for (const Parent &parent : known)
+    parents.emplace(parent.hanging, parent);
+
+  std::map<unsigned int, std::vector<Parent>> to_send;
+  auto                                        range = exchange.indices().import_indices().begin();
+  for (const auto &[rank, count] : exchange.indices().import_targets())
+    for (unsigned int n = 0; n < count; ++range)
+      for (unsigned int i = range->first; i < range->second; ++i, ++n)
+        {
+          const auto [first, last] = parents.equal_range(global_node(i));
+          for (auto p = first; p != last; ++p)
+            to_send[rank].push_back(p->second);
+        }
+
+  std::vector<Parent> result;
+  for (const auto &[rank, received] :
+       mpi::exchange_values(to_send, exchange.indices().get_mpi_communicator()))
+    for (const Parent &parent : received)
+      if (parents.count(parent.hanging) == 0)
+        result.push_back(parent);
+  return result;
+}
+
+// Ghost nodes get new local numbers; owned ones keep theirs.
+template <int dim>
+void
+Octree<dim>::add_ghosts(const std::vector<Parent> &parents)
+{
+  const NodeExchange before = exchange;
+  dealii::IndexSet   known(dof_handler.n_dofs());
+  known.add_indices(before.indices().locally_owned_range());
+  known.add_indices(before.indices().ghost_indices());
+  for (const Parent &parent : parents)
+    known.add_index(parent.parent);
+  exchange.reinit(dof_handler.locally_owned_dofs(), known, triangulation.get_communicator());
+
+  std::vector<unsigned int>       number(positions.size());
+  std::vector<dealii::Point<dim>> places(exchange.n_owned() + exchange.n_ghosts());
+  for (const Parent &parent : parents)
+    for (unsigned int d = 0; d < dim; ++d)
+      places[exchange.indices().global_to_local(parent.parent)][d] = parent.place[d];
+  for (unsigned int node = 0; node < positions.size(); ++node)
     {
-      if (!relevant.is_element(line.index))
-        continue;
-      HangingNode node;
-      node.node = exchange.indices().global_to_local(line.index);
-      for (const auto &[parent, weight] : line.entries)
-        {
-          // Only nodes on the far side of ghost leaves can have parents out of reach.
-          if (!relevant.is_element(parent))
-            {
-              node.parents.clear();
-              break;
-            }
-          node.parents.emplace_back(exchange.indices().global_to_local(parent), weight);
-        }
-      if (node.parents.empty())
-        {
-          remote_hanging = true;
-          continue;
-        }
-      node_to_hanging[node.node] = hanging.size();
-      hanging.push_back(std::move(node));
+      number[node] = exchange.indices().global_to_local(before.indices().local_to_global(node));
+      places[number[node]] = positions[node];
     }
-  remote_hanging =
-    dealii::Utilities::MPI::logical_or(remote_hanging, triangulation.get_communicator());
+  positions.swap(places);
+  for (auto &nodes : leaf_nodes)
+    for (unsigned int &node : nodes)
+      node = number[node];
+}
+
+template <int dim>
+void
+Octree<dim>::make_hanging_nodes()
+{
+  std::vector<Parent>       parents = find_parents();
+  const std::vector<Parent> far     = find_far_parents(parents);
+  if (mpi::any(!far.empty(), triangulation.get_communicator()))
+    {
+      add_ghosts(far);
+      parents.insert(parents.end(), far.begin(), far.end());
+    }
+  node_to_hanging.assign(n_nodes(), -1);
+  for (const Parent &parent : parents)
+    {
+      const unsigned int node = exchange.indices().global_to_local(parent.hanging);
+      if (node_to_hanging[node] < 0)
+        {
+          node_to_hanging[node] = hanging.size();
+          hanging.push_back({node, {}});
+        }
+      hanging[node_to_hanging[node]].parents.emplace_back(
+        exchange.indices().global_to_local(parent.parent), parent.weight);
+    }
 }
 
 template <int dim>

@@ -157,9 +157,8 @@ private:
       }
   }
 
-  void give_affine(const Sample<dim>      &sample,
-                   const CornerShape<dim> &shape,
-                   CornerSums<dim>        &sums) const
+  void
+  give_affine(const Sample<dim> &sample, const CornerShape<dim> &shape, CornerSums<dim> &sums) const
   {
     Vector<dim, CornerPack<dim>> arm;
     Matrix<dim, double>          affine_velocity;

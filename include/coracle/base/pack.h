@@ -74,6 +74,25 @@ store_first(double *const address, const T &value, const int n_lanes)
   std::memcpy(address, &value, n_lanes * sizeof(double));
 }
 
+/// The first n lanes.
+inline Mask8
+first_lanes(const int n)
+{
+  const Mask8 lane = {0, 1, 2, 3, 4, 5, 6, 7};
+  return lane < n;
+}
+
+/// Largest lane.
+template <typename T>
+inline double
+largest(const T &value)
+{
+  double result = value[0];
+  for (int l = 1; l < PackTraits<T>::size; ++l)
+    result = std::max(result, value[l]);
+  return result;
+}
+
 inline double
 sum(const double value)
 {

@@ -89,5 +89,7 @@ private:
   double rho = 0, largest = 0;
   /// Largest eigenvalue of the preconditioned problem seen so far.
   double stiffness = 1;
+  /// Steps of one run on a face; more while faces last.
+  unsigned int n_steps = 4;
 };
 } // namespace coracle::contact

@@ -34,7 +34,8 @@ public:
   /// Momentum that contact has given to each material point body so far; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
-  /// Particles that lie in a body or nearer to it than the contact distance; a UserError if any. Collective.
+  /// Particles that lie in a body or nearer to it than the contact distance; a UserError if any.
+  /// Collective.
   void refuse_initial_overlaps(const Parameters         &root,
                                MaterialPointSystem<dim> &points,
                                StructureSystem<dim>     &structure);
@@ -48,12 +49,12 @@ private:
                      const unsigned int              row,
                      const Action                   &action) const;
 
-  MPI_Comm                                     comm;
-  contact::ContactSystem<dim>                  system;
-  std::vector<contact::PointSet<dim>>          sets;
-  std::vector<std::vector<std::uint64_t>>      ids;
-  std::vector<std::vector<double>>             radii;
-  std::vector<dealii::Tensor<1, dim>>          impulse, correction, received;
-  std::uint64_t                                penetrations = 0;
+  MPI_Comm                                comm;
+  contact::ContactSystem<dim>             system;
+  std::vector<contact::PointSet<dim>>     sets;
+  std::vector<std::vector<std::uint64_t>> ids;
+  std::vector<std::vector<double>>        radii;
+  std::vector<dealii::Tensor<1, dim>>     impulse, correction, received;
+  std::uint64_t                           penetrations = 0;
 };
 } // namespace coracle

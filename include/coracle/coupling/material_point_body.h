@@ -10,8 +10,8 @@
 
 namespace coracle
 {
-/// When in a step stresses are updated: with the velocities at its start (USF), at its end (USL), or
-/// at its end with velocities gathered again from the particles (MUSL, Sulsky et al. 1995).
+/// When in a step stresses are updated: with the velocities at its start (USF), at its end (USL),
+/// or at its end with velocities gathered again from the particles (MUSL, Sulsky et al. 1995).
 enum class StressUpdate
 {
   usf,
@@ -43,21 +43,21 @@ public:
   /// Velocities times exp(-c dt) while damping is on [J lost].
   double damp(const double time, const double dt);
 
-  MaterialPoints<dim>                    points;
-  const MaterialVariant                 &material;
-  TransferOptions                        transfer;
-  VolumeStrain                           volume_strain;
-  StressUpdate                           stress_update;
-  std::string                            field_name;
-  unsigned int                           field = 0;
+  MaterialPoints<dim>    points;
+  const MaterialVariant &material;
+  TransferOptions        transfer;
+  VolumeStrain           volume_strain;
+  StressUpdate           stress_update;
+  std::string            field_name;
+  unsigned int           field = 0;
   /// Contact radius over particle size [1].
-  double                                 radius_factor;
+  double radius_factor;
   /// Acceleration [m/s^2] besides gravity, or none.
   std::unique_ptr<dealii::Function<dim>> body_force;
   /// Of the last stress update, on this rank.
-  StressSweep                            sweep;
+  StressSweep sweep;
   /// Work of stresses so far, on this rank [J].
-  double                                 internal_energy = 0;
+  double internal_energy = 0;
 
 private:
   void generate(const Parameters &body, const Octree<dim> &octree);

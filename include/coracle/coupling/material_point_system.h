@@ -27,7 +27,8 @@ public:
                       const int                     n_sheets,
                       MPI_Comm                      comm);
 
-  /// Bound on the step from wave speed, particle speed and viscosity in the cells, on all ranks [s].
+  /// Bound on the step from wave speed, particle speed and viscosity in the cells, on all ranks
+  /// [s].
   double stable_time_step() const;
 
   /// Mass, momentum, internal and external force to the nodes of each field.
@@ -73,13 +74,14 @@ public:
 private:
   void             make_fields();
   NodalField<dim> &field(const MaterialPointBody<dim> &body);
+  bool             shares_musl_field(const MaterialPointBody<dim> &body) const;
   void             update_stress(MaterialPointBody<dim> &body,
                                  const NodeRecords      &velocity,
                                  const unsigned int      place,
                                  const double            time,
                                  const double            dt);
-  void             add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
-  void             sort_when_due();
+  void add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
+  void sort_when_due();
 
   Books        energy;
   unsigned int steps_since_sort = 0;

@@ -37,18 +37,16 @@ struct StressSweep
  * @param velocity records whose entries velocity_place... are the nodal velocity [m/s]
  */
 template <int dim>
-StressSweep
-update_particle_stress(const Octree<dim>     &octree,
-                       const NodeRecords     &velocity,
-                       const unsigned int     velocity_place,
-                       const MaterialVariant &material,
-                       const ParticleShape    shape,
-                       const VolumeStrain     volume_strain,
-                       const double           dt,
-                       MaterialPoints<dim>   &points);
+StressSweep update_particle_stress(const Octree<dim>     &octree,
+                                   const NodeRecords     &velocity,
+                                   const unsigned int     velocity_place,
+                                   const MaterialVariant &material,
+                                   const ParticleShape    shape,
+                                   const VolumeStrain     volume_strain,
+                                   const double           dt,
+                                   MaterialPoints<dim>   &points);
 
 /// Stress (pressure) of particles that have just been made, from their density, at rest.
 template <int dim>
-void
-initialise_particle_stress(const MaterialVariant &material, MaterialPoints<dim> &points);
+void initialise_particle_stress(const MaterialVariant &material, MaterialPoints<dim> &points);
 } // namespace coracle

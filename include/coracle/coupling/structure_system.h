@@ -45,13 +45,20 @@ public:
    * @param impulse, correction one per node of the published surface [N s, kg m]
    * @param rigid one per rigid body, the same on all ranks
    */
-  void apply_contact(
-    const std::vector<dealii::Tensor<1, dim>>                            &impulse,
-    const std::vector<dealii::Tensor<1, dim>>                            &correction,
-    const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid);
+  void apply_contact(const std::vector<dealii::Tensor<1, dim>> &impulse,
+                     const std::vector<dealii::Tensor<1, dim>> &correction,
+                     const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid);
 
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
+
+  /// Name of a body by its number among the surfaces.
+  const std::string &body_name(const unsigned int surface_body) const
+  {
+    return surface_body < solids.size()
+             ? std::next(solids.begin(), surface_body)->name()
+             : std::next(rigids.begin(), surface_body - solids.size())->name();
+  }
 
   bool empty() const { return solids.empty() && rigids.empty(); }
 
@@ -64,9 +71,9 @@ private:
   template <typename Action>
   void for_each_surface(const Action &action);
 
-  MPI_Comm                  comm;
-  contact::Surface<dim>     surface;
-  std::vector<unsigned int> first_node;
+  MPI_Comm                            comm;
+  contact::Surface<dim>               surface;
+  std::vector<unsigned int>           first_node;
   std::vector<dealii::Tensor<1, dim>> received;
 };
 } // namespace coracle

@@ -37,7 +37,7 @@ corner_bit(const int corner, const int d)
 template <int dim>
 struct CornerShape
 {
-  CornerPack<dim>              value;
+  CornerPack<dim> value;
   /// Derivatives in unit coordinates; divide by the cell size for 1/m.
   Vector<dim, CornerPack<dim>> gradient;
 
@@ -78,18 +78,20 @@ public:
   CornerPack<dim>              mass{};
   Vector<dim, CornerPack<dim>> momentum{}, force{};
 
-  void add_momentum(const CornerShape<dim> &shape, const double m, const Vector<dim, double> &velocity)
+  void
+  add_momentum(const CornerShape<dim> &shape, const double m, const Vector<dim, double> &velocity)
   {
     const CornerPack<dim> weight = shape.value * m;
     for (int d = 0; d < dim; ++d)
       momentum[d] += weight * velocity[d];
   }
 
-  /// Velocity v + C (x_corner - x_p), C in 1/s, with r = x_corner - x_p [m] from the shape's xi and h.
-  void add_affine_momentum(const CornerShape<dim>            &shape,
-                           const double                       m,
-                           const Vector<dim, double>         &velocity,
-                           const Matrix<dim, double>         &affine,
+  /// Velocity v + C (x_corner - x_p), C in 1/s, with r = x_corner - x_p [m] from the shape's xi and
+  /// h.
+  void add_affine_momentum(const CornerShape<dim>             &shape,
+                           const double                        m,
+                           const Vector<dim, double>          &velocity,
+                           const Matrix<dim, double>          &affine,
                            const Vector<dim, CornerPack<dim>> &r)
   {
     const CornerPack<dim> weight = shape.value * m;
@@ -103,7 +105,8 @@ public:
   }
 
   /// Internal force -V sigma grad N; `volume_per_size` = V/h.
-  void add_pressure(const CornerShape<dim> &shape, const double pressure, const double volume_per_size)
+  void
+  add_pressure(const CornerShape<dim> &shape, const double pressure, const double volume_per_size)
   {
     const double factor = pressure * volume_per_size;
     for (int d = 0; d < dim; ++d)
@@ -143,8 +146,7 @@ struct PackShape
 {
   Vector<dim, Pack8> one_minus, xi;
 
-  explicit PackShape(const Vector<dim, Pack8> &xi)
-    : xi(xi)
+  explicit PackShape(const Vector<dim, Pack8> &xi) : xi(xi)
   {
     for (int d = 0; d < dim; ++d)
       one_minus[d] = 1. - xi[d];

@@ -23,12 +23,14 @@ public:
   static constexpr unsigned int max_levels = 24;
 
   void reinit(const dealii::Point<dim>            &lower,
-              const double                         coarse_cell_size,
+              const dealii::Point<dim>            &upper,
               const std::array<unsigned int, dim> &n_coarse_cells)
   {
     origin = lower;
-    scale  = std::ldexp(1. / coarse_cell_size, max_levels);
+    end    = upper;
     n      = n_coarse_cells;
+    for (unsigned int d = 0; d < dim; ++d)
+      scale[d] = std::ldexp(n[d] / (upper[d] - lower[d]), max_levels);
     std::size_t size = 1;
     for (const unsigned int k : n)
       size *= k;
@@ -73,11 +75,11 @@ private:
   {
     for (unsigned int d = 0; d < dim; ++d)
       {
-        const double        s     = (point[d] - origin[d]) * scale;
-        const std::uint64_t limit = static_cast<std::uint64_t>(n[d]) << max_levels;
-        if (!(s >= 0 && s <= static_cast<double>(limit)))
+        // The coordinates themselves are compared: scaled ones may round to beyond the upper face.
+        if (!(point[d] >= origin[d] && point[d] <= end[d]))
           return false;
-        c[d] = std::min(static_cast<std::uint64_t>(s), limit - 1);
+        const std::uint64_t limit = static_cast<std::uint64_t>(n[d]) << max_levels;
+        c[d] = std::min(static_cast<std::uint64_t>((point[d] - origin[d]) * scale[d]), limit - 1);
       }
     return true;
   }
@@ -98,8 +100,8 @@ private:
     return result;
   }
 
-  dealii::Point<dim>            origin;
-  double                        scale = 1;
+  dealii::Point<dim>            origin, end;
+  std::array<double, dim>       scale{};
   std::array<unsigned int, dim> n{};
   /// >= 0: leaf; -1: not known here; below: -2 - index of the first of 2^dim children.
   std::vector<int> entries;

@@ -11,20 +11,19 @@ namespace coracle
  * strays, those on another rank's leaves are sent there, those that left
  * through an open face are removed and counted. Collective.
  *
- * Throws RunFailure, on the rank concerned only and after all communication, for a particle that is outside of the box other than
- * through an open face, or where no neighbouring rank has a leaf: it names
- * the particle, the place and the face.
+ * Throws RunFailure, on the rank concerned only and after all communication, for a particle that is
+ * outside of the box other than through an open face, or where no neighbouring rank has a leaf: it
+ * names the particle, the place and the face.
  *
  * @param margin_of_shape 0, or the part of a particle's size that it reaches out (GIMP: 0.5)
  * @return particles that this rank received
  */
 template <int dim>
-unsigned int
-move_and_locate(const Octree<dim>      &octree,
-                const BoxBoundary<dim> &boundary,
-                const double            margin_of_shape,
-                const double            time,
-                MaterialPoints<dim>    &points);
+unsigned int move_and_locate(const Octree<dim>      &octree,
+                             const BoxBoundary<dim> &boundary,
+                             const double            margin_of_shape,
+                             const double            time,
+                             MaterialPoints<dim>    &points);
 
 /// Sort the particles by their leaf. All of them must be on this rank's leaves.
 template <int dim>

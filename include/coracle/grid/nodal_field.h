@@ -36,7 +36,7 @@ public:
 
   NodalField(const Octree<dim> &octree, const BoxBoundary<dim> &boundary);
 
-  NodeRecords &gathered() { return records; }
+  NodeRecords       &gathered() { return records; }
   const NodeRecords &motion() const { return motions; }
 
   void clear();
@@ -65,13 +65,14 @@ public:
                    const dealii::Tensor<1, dim> &correction);
   void apply_impulses();
   /// Position correction of nodes over this step [m], and whether there is any on this rank.
-  bool                           has_shift() const { return !shifted_nodes.empty(); }
-  const dealii::Tensor<1, dim>  &shift(const unsigned int node) const { return shifts[node]; }
-  bool                           is_shifted(const unsigned int node) const { return shifted[node]; }
+  bool                          has_shift() const { return !shifted_nodes.empty(); }
+  const dealii::Tensor<1, dim> &shift(const unsigned int node) const { return shifts[node]; }
+  bool                          is_shifted(const unsigned int node) const { return shifted[node]; }
 
   /// For the second gathering of momentum (MUSL): keeps the masses.
   void clear_momentum();
-  /// v2 = p/m with the conditions of the box, in the momentum's place; hanging nodes and ghosts too.
+  /// v2 = p/m with the conditions of the box, in the momentum's place; hanging nodes and ghosts
+  /// too.
   void remap();
 
   /// 1/m per direction, 0 where the box fixes the node or no mass is near.

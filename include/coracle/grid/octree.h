@@ -47,9 +47,9 @@ struct OctreeDescription
  *
  * Cells known to this rank are *leaves*: first the locally owned ones along
  * the space-filling curve, then the ghosts. Their corners are *nodes* with
- * local indices: first the locally owned ones, then the ghosts. All hot loops
- * use these two numberings and plain arrays; deal.II's objects stay available
- * for output, refinement and weights.
+ * local indices: first the locally owned ones, then the ghosts, among them the
+ * parents of all hanging nodes. All hot loops use these two numberings and plain arrays; deal.II's
+ * objects stay available for output, refinement and weights.
  *
  * The coarse mesh, which p4est replicates on every rank, has the largest cells
  * that fit the box by bisection from the base cells.
@@ -63,17 +63,17 @@ public:
   /// A hanging node is the weighted mean of its parents, none of which hangs itself.
   struct HangingNode
   {
-    unsigned int                                      node;
-    std::vector<std::pair<unsigned int, double>>      parents;
+    unsigned int                                 node;
+    std::vector<std::pair<unsigned int, double>> parents;
   };
 
   /**
    * @param weight work expected in a cell, from its centre and size, >= 0 (1 for a cell with
    *        nothing in it is added); decides the partition. May be empty.
    */
-  Octree(const OctreeDescription<dim>                                       &description,
+  Octree(const OctreeDescription<dim>                                          &description,
          const std::function<double(const dealii::Point<dim> &, const double)> &weight,
-         MPI_Comm                                                            communicator);
+         MPI_Comm                                                               communicator);
 
   unsigned int n_owned_leaves() const { return n_owned; }
   unsigned int n_leaves() const { return leaf_nodes.size(); }
@@ -99,10 +99,8 @@ public:
   dealii::types::global_dof_index global_node(const unsigned int node) const;
   int                             node_owner(const unsigned int node) const;
 
+  /// All that hang among this rank's nodes; their parents are nodes of this rank as well.
   const std::vector<HangingNode> &hanging_nodes() const { return hanging; }
-  /// True if some ghost leaf has a hanging node whose parents this rank does not know: what is
-  /// gathered there must go to its owner before it is condensed.
-  bool has_remote_hanging_nodes() const { return remote_hanging; }
   /// Index into hanging_nodes(), or -1.
   int hanging_index(const unsigned int node) const { return node_to_hanging[node]; }
 
@@ -111,11 +109,11 @@ public:
   dealii::BoundingBox<dim> owned_region() const;
   double                   smallest_cell_size() const;
 
-  NodeExchange                                            exchange;
-  dealii::parallel::distributed::Triangulation<dim>       triangulation;
-  dealii::DoFHandler<dim>                                 dof_handler;
+  NodeExchange                                      exchange;
+  dealii::parallel::distributed::Triangulation<dim> triangulation;
+  dealii::DoFHandler<dim>                           dof_handler;
   /// For output: leaf of deal.II's active cell index, or -1.
-  std::vector<int>                                        leaf_of_active_cell;
+  std::vector<int> leaf_of_active_cell;
 
   std::size_t memory_consumption() const;
 
@@ -124,6 +122,17 @@ private:
   void partition(const std::function<double(const dealii::Point<dim> &, const double)> &weight);
   void enumerate();
   void make_hanging_nodes();
+
+  /// One parent of a hanging node.
+  struct Parent
+  {
+    dealii::types::global_dof_index hanging, parent;
+    double                          weight;
+    std::array<double, dim>         place;
+  };
+  std::vector<Parent> find_parents() const;
+  std::vector<Parent> find_far_parents(const std::vector<Parent> &known) const;
+  void                add_ghosts(const std::vector<Parent> &parents);
 
   OctreeDescription<dim>                           description;
   std::vector<unsigned int>                        n_coarse_cells;
@@ -138,6 +147,5 @@ private:
   std::vector<dealii::Point<dim>>                  positions;
   std::vector<HangingNode>                         hanging;
   std::vector<int>                                 node_to_hanging;
-  bool                                             remote_hanging = false;
 };
 } // namespace coracle

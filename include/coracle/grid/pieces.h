@@ -42,7 +42,8 @@ for_each_piece(const Octree<dim>        &octree,
   {
     dealii::Point<dim> lower, upper;
   };
-  // Leaves may be half as large as the particle's box at a 2:1 face; 4^dim pieces are never reached.
+  // Leaves may be half as large as the particle's box at a 2:1 face; 4^dim pieces are never
+  // reached.
   std::array<Box, (1 << (2 * dim))> stack;
   unsigned int                      n_boxes = 1;
   double                            volume  = 1;
@@ -52,8 +53,9 @@ for_each_piece(const Octree<dim>        &octree,
       stack[0].upper[d] = std::min(centre[d] + half_size, octree.box().upper_bound(d));
       volume *= stack[0].upper[d] - stack[0].lower[d];
     }
-  // A sliver thinner than round-off is not a piece.
-  const double nothing = 1e-12 * half_size;
+  // A sliver is not a piece; its width is well above the round-off of coordinates, so that the cut
+  // always goes on to the next leaf.
+  const double nothing = 1e-9 * half_size;
   while (n_boxes > 0)
     {
       Box                box = stack[--n_boxes];

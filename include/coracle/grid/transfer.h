@@ -11,7 +11,8 @@ namespace coracle
 /// How velocities go from the grid to particles.
 enum class VelocityTransfer
 {
-  /// v_p += change of the grid's velocity, blended with a fraction of the grid's velocity itself (PIC).
+  /// v_p += change of the grid's velocity, blended with a fraction of the grid's velocity itself
+  /// (PIC).
   flip,
   /// v_p = the grid's velocity, with its gradient carried as affine velocity (Jiang et al. 2015).
   apic
@@ -20,11 +21,11 @@ enum class VelocityTransfer
 /// Choices that hold for one body and all of a run.
 struct TransferOptions
 {
-  ParticleShape    shape            = ParticleShape::linear;
-  VelocityTransfer velocity         = VelocityTransfer::flip;
-  double           pic_fraction     = 0;
+  ParticleShape    shape        = ParticleShape::linear;
+  VelocityTransfer velocity     = VelocityTransfer::flip;
+  double           pic_fraction = 0;
   /// Forces from the mean pressure of a cell's particles instead of each one's own.
-  bool             average_pressure = false;
+  bool average_pressure = false;
 };
 
 /// What particles give to the grid in one sweep.
@@ -40,12 +41,11 @@ enum class Give
  * body are added to the field's gathered records.
  */
 template <int dim>
-void
-particles_to_grid(const Octree<dim>     &octree,
-                  MaterialPoints<dim>   &points,
-                  const TransferOptions &options,
-                  const Give             give,
-                  NodalField<dim>       &field);
+void particles_to_grid(const Octree<dim>     &octree,
+                       MaterialPoints<dim>   &points,
+                       const TransferOptions &options,
+                       const Give             give,
+                       NodalField<dim>       &field);
 
 /**
  * Grid to particles: new velocities, and next positions from the grid's
@@ -53,23 +53,23 @@ particles_to_grid(const Octree<dim>     &octree,
  * second gathering and the strain increments of MUSL use the weights of the
  * step's start. With `remap`, momenta are given back in the same sweep (MUSL,
  * the second particles-to-grid); clear_momentum() must have been called.
+ * @return kinetic energy of this rank's particles afterwards [J]
  */
 template <int dim>
-void
-grid_to_particles(const Octree<dim>     &octree,
-                  const TransferOptions &options,
-                  const double           dt,
-                  const bool             remap,
-                  NodalField<dim>       &field,
-                  MaterialPoints<dim>   &points);
+double grid_to_particles(const Octree<dim>     &octree,
+                         const TransferOptions &options,
+                         const double           dt,
+                         const bool             remap,
+                         NodalField<dim>       &field,
+                         MaterialPoints<dim>   &points);
 
 /// Is the particle wholly in the cell? Lanes of points; `margin` is 0 or half the particle's size.
 template <int dim>
 inline Mask8
-inside_cell(const Vector<dim, Pack8>  &position,
-            const dealii::Point<dim>  &lower,
-            const double               size,
-            const Pack8               &margin)
+inside_cell(const Vector<dim, Pack8> &position,
+            const dealii::Point<dim> &lower,
+            const double              size,
+            const Pack8              &margin)
 {
   Mask8 inside = (position[0] - margin >= lower[0]) & (position[0] + margin < lower[0] + size);
   for (int d = 1; d < dim; ++d)

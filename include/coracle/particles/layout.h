@@ -9,7 +9,7 @@ namespace coracle
 struct ParticleNeeds
 {
   /// Stress is -p I: one column of pressure instead of the tensor.
-  bool isotropic_stress = false;
+  bool isotropic_stress     = false;
   bool deformation_gradient = false;
   /// Doubles of material history.
   int n_history = 0;
@@ -32,7 +32,7 @@ struct ParticleLayout
     , n_history(needs.n_history)
     , n_sheets(needs.n_sheets)
   {
-    int next     = stress + n_stress;
+    int        next = stress + n_stress;
     const auto take = [&next](const int n) {
       const int first = n > 0 ? next : -1;
       next += n;
@@ -47,7 +47,8 @@ struct ParticleLayout
 
   /// Position [m] and velocity [m/s]; position at the end of the step [m].
   static constexpr int position = 0, velocity = dim, next_position = 2 * dim;
-  /// Mass [kg] (per metre of depth in 2-D), current density [kg/m^3], edge of the particle's box [m].
+  /// Mass [kg] (per metre of depth in 2-D), current density [kg/m^3], edge of the particle's box
+  /// [m].
   static constexpr int mass = 3 * dim, density = mass + 1, size = mass + 2, id = mass + 3;
   /// Pressure or Cauchy stress [Pa].
   static constexpr int stress = mass + 4;

@@ -68,7 +68,8 @@ public:
 
   std::vector<Stray> strays;
 
-  /// Counting sort; drops holes and strays. `cell[row]` is the home of each row (any value for a hole).
+  /// Counting sort; drops holes and strays. `cell[row]` is the home of each row (any value for a
+  /// hole).
   void sort(const unsigned int n_cells, const std::vector<int> &cell);
 
   /// Append one row, as migration and generation do.

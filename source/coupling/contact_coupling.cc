@@ -190,7 +190,10 @@ ContactCoupling<dim>::refuse_initial_overlaps(const Parameters         &root,
         for (int d = 0; d < dim; ++d)
           deepest[4 + d] = overlap.place[d];
       }
-  for (const auto &other : dealii::Utilities::MPI::all_gather(comm, deepest))
+  // Equally deep ones are common under a flat surface: all ranks must name the same.
+  const auto of_all = dealii::Utilities::MPI::all_gather(comm, deepest);
+  deepest           = of_all.front();
+  for (const auto &other : of_all)
     if (other[0] > deepest[0])
       deepest = other;
 

@@ -171,6 +171,13 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
                                             octree.owned_region(),
                                             octree.triangulation.get_communicator());
   const double size = std::pow(made.volume, 1. / dim);
+  // A particle's box reaches into neighbouring cells, which is all that a rank knows besides its own.
+  if (transfer.shape == ParticleShape::gimp && size > 2 * octree.smallest_cell_size())
+    throw body.error("Particle spacing",
+                     "particles are larger than two cells",
+                     "boxes of " + std::to_string(size) + " m, smallest cells of " +
+                       std::to_string(octree.smallest_cell_size()) + " m",
+                     "choose a smaller spacing, Shape functions = linear, or larger cells");
 
   const std::vector<double>              constant = body.list("Initial velocity");
   std::unique_ptr<dealii::Function<dim>> varying;

@@ -80,7 +80,7 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
   const auto &rows = delassus.rows();
   step.resize(rows.size());
   if (accelerate)
-    face_solver.reinit(delassus);
+    face_solver.reinit(delassus, v);
 
   // Velocities with the impulses to start from.
   before        = v;
@@ -113,8 +113,7 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
           finished())
         return report;
       if (accelerate && report.iterations % sweeps_per_face == 0)
-        report.face_steps +=
-          face_solver.improve(delassus, target, friction, 0.3 * limits.tolerance, impulses, v);
+        report.face_steps += face_solver.improve(delassus, target, friction, impulses, v);
     }
 }
 

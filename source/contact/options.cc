@@ -28,7 +28,7 @@ ContactOptions::declare(Declaration &section)
              "Sweeps of the position correction after which it goes on in the next step",
              1);
   section.quantity("Tolerance",
-                   "1e-5",
+                   "1e-4",
                    "1",
                    "",
                    "Residual of the contact conditions at which the solver stops, relative to the "
@@ -36,7 +36,7 @@ ContactOptions::declare(Declaration &section)
                    0,
                    1);
   section.integer("Maximum iterations",
-                  200,
+                  1000,
                   "Sweeps of the contact solver after which a step counts as not converged",
                   1);
   section.flag("Accelerate", true, "Conjugate directions between the sweeps of the contact solver");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/contact/single_contact.h>
+#include <coracle/contact/delassus.h>
 
 namespace coracle::contact
 {
@@ -10,14 +10,13 @@ namespace coracle::contact
  * nearly dependent rows on which sweeps creep; but sweeps soon find out which
  * contacts are closed and which stick. On that face of the problem (normal
  * impulses of closed contacts, friction impulses of sticking ones) the problem
- * is linear, and preconditioned conjugate gradients solve it quickly.
- *
- * Where a step would leave what is admissible, each contact is cut to it, and a
- * projected gradient step of fixed length completes the new face: projected
- * conjugate gradients with the expansion of Dostal & Schoeberl, Minimizing
- * quadratic functions subject to bound constraints with the rate of convergence
- * and finite termination (2005). Sweeps in between close contacts again and
- * treat sliding ones.
+ * is linear, and preconditioned conjugate gradients solve it quickly. The
+ * result is projected back to what is admissible and taken only if it lowers
+ *   sum P . (u + u_free) / 2 - P_n target,
+ * whose minimum the solution is (without friction exactly); else a shorter way
+ * in the same direction is tried. Sweeps and face solves alternate as in
+ * Silcowitz-Hansen, Niebe & Erleben, Projected Gauss-Seidel subspace
+ * minimization method for interactive rigid body dynamics (2010).
  */
 template <int dim>
 class FaceSolver
@@ -27,17 +26,13 @@ public:
 
   explicit FaceSolver(MPI_Comm communicator);
 
-  /// Collective. At the start of a solve.
-  void reinit(const Delassus<dim> &delassus);
+  /// Collective. At the start of a solve: the velocities without impulses.
+  void reinit(const Delassus<dim> &delassus, const Velocities<dim> &free);
 
-  /**
-   * Collective. Improves impulses and velocities; returns the number of steps.
-   * @param goal residual on the face at which to stop [m/s]
-   */
+  /// Collective. Improves impulses and velocities; returns the number of conjugate gradient steps.
   unsigned int improve(Delassus<dim>             &delassus,
                        const std::vector<double> &target,
                        const bool                 friction,
-                       const double               goal,
                        std::vector<Vector>       &impulses,
                        Velocities<dim>           &v);
 
@@ -54,42 +49,24 @@ private:
                    const bool                 friction,
                    const std::vector<Vector> &impulses);
   Vector restrict_to_face(const std::size_t c, const Vector &normal, const Vector &a) const;
-
-  /// The residual on the face as remainder and first direction.
-  void start_face(const Delassus<dim>       &delassus,
-                  const std::vector<double> &target,
-                  const bool                 friction,
-                  const std::vector<Vector> &impulses,
-                  const Velocities<dim>     &v);
-
-  /// M^-1 J^T of impulses, over all ranks, as `response`.
-  void respond(Delassus<dim> &delassus, const std::vector<Vector> &impulses);
-
-  /// Conjugate gradient step; false if it had to be cut to what is admissible, which ends the face.
-  bool   take_step(Delassus<dim>       &delassus,
-                   const bool           friction,
-                   std::vector<Vector> &impulses,
-                   Velocities<dim>     &v);
-  double admissible_length(const Delassus<dim>       &delassus,
-                           const bool                 friction,
-                           const std::vector<Vector> &impulses) const;
-
-  /// Projected gradient step of all contacts.
-  void expand(Delassus<dim>             &delassus,
-              const std::vector<double> &target,
-              const bool                 friction,
-              std::vector<Vector>       &impulses,
-              Velocities<dim>           &v);
+  /// way = solution on the face minus present impulses.
+  unsigned int conjugate_gradients(Delassus<dim>             &delassus,
+                                   const std::vector<double> &target,
+                                   const Velocities<dim>     &v);
+  /// Velocities of impulses: M^-1 J^T of the argument, over all ranks.
+  void
+  respond(Delassus<dim> &delassus, const std::vector<Vector> &impulses, Velocities<dim> &result);
+  double energy(const Delassus<dim>       &delassus,
+                const std::vector<double> &target,
+                const std::vector<Vector> &impulses,
+                const Velocities<dim>     &v) const;
+  double sum(double a) const;
 
   MPI_Comm            communicator;
+  unsigned int        n_steps = 8;
+  std::vector<Vector> free_velocity;
   std::vector<Free>   face;
-  std::vector<Vector> direction, remainder, change;
-  Velocities<dim>     zero, response;
-  /// Square of the residual in the preconditioner's norm [J], and its largest entry [m/s].
-  double rho = 0, largest = 0;
-  /// Largest eigenvalue of the preconditioned problem seen so far.
-  double stiffness = 1;
-  /// Steps of one run on a face; more while faces last.
-  unsigned int n_steps = 4;
+  std::vector<Vector> way, direction, remainder, trial, change;
+  Velocities<dim>     zero, response, moved;
 };
 } // namespace coracle::contact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/contact/face_solver.h>
+#include <coracle/contact/single_contact.h>
 
 namespace coracle::contact
 {

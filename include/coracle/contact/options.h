@@ -21,8 +21,8 @@ struct ContactOptions
   /// Share of the depth that the blended law turns into velocity, alpha [1].
   double alpha = 0.3;
   /// Residual at which the solver stops, relative to the greatest approach speed [1].
-  double       tolerance          = 1e-5;
-  unsigned int maximum_iterations = 200;
+  double       tolerance          = 1e-4;
+  unsigned int maximum_iterations = 1000;
   bool         accelerate         = true;
   /// Remove remaining depth by moving positions (law split).
   bool         position_correction = true;

@@ -9,7 +9,7 @@ namespace coracle::contact
 {
 /**
  * The next impulse of one contact, everything else held fixed: the step that
- * brings its velocity to the target, times `share`, then cut to what is
+ * brings its velocity to the target, then cut to what is
  * admissible (P_n >= 0, |P_t| <= mu P_n).
  * @param u relative velocity now [m/s]
  */
@@ -19,19 +19,18 @@ next_impulse(const typename Delassus<dim>::Row &row,
              const dealii::Tensor<1, dim>      &impulse,
              dealii::Tensor<1, dim>             u,
              const double                       target,
-             const bool                         friction,
-             const double                       share = 1)
+             const bool                         friction)
 {
   const double old_normal = impulse * row.normal;
   const double normal =
-    std::max(0., old_normal - share * (u * row.normal - target) / row.normal_inverse_mass);
+    std::max(0., old_normal - (u * row.normal - target) / row.normal_inverse_mass);
   if (!friction || row.friction == 0 || normal == 0)
     return normal * row.normal;
 
   // Friction sees what the normal impulse has changed.
   u += (normal - old_normal) * row.normal_response;
   dealii::Tensor<1, dim> tangential = impulse - old_normal * row.normal;
-  tangential -= share / row.tangential_inverse_mass * (u - (u * row.normal) * row.normal);
+  tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
   const double limit = row.friction * normal, size = tangential.norm();
   if (size > limit)
     tangential *= limit / size;

@@ -163,10 +163,11 @@ NodalField<dim>::apply_impulses()
       {
         if (owned && inverse[d] > 0)
           {
-            const double work =
-              r[d] * (motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d]);
-            books.contact += work;
-            books.given += work;
+            const double mean = motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d];
+            books.given += r[d] * mean;
+            // Forces and contact act at once, over the same way: from the velocity at the start of
+            // the step to that at its end. So bodies that lean on each other lose nothing.
+            books.contact += r[d] * (mean - 0.5 * motions[node][Motion::change + d]);
           }
         motions[node][Motion::velocity + d] += r[d] * inverse[d];
         motions[node][Motion::change + d] += r[d] * inverse[d];

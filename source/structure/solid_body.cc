@@ -162,7 +162,8 @@ template <int dim>
 void
 SolidBody<dim>::predict_velocities(const double dt)
 {
-  kick(0.5 * (last_dt + dt), dt);
+  kick_duration = 0.5 * (last_dt + dt);
+  kick(kick_duration, dt);
   last_dt = dt;
   distribute(Node::velocity);
 }
@@ -228,8 +229,15 @@ SolidBody<dim>::apply_contact_impulses()
         double      &impulse = nodes[Node::impulse + d][n], &v = nodes[Node::velocity + d][n];
         const double before = v, inverse_mass = nodes[Node::inverse_mass + d][n];
         v += impulse * inverse_mass;
-        const double work = impulse * 0.5 * (before + v);
+        // Forces and contact act at once, over the same way: from the velocity at the start of the
+        // step to that at its end. The kick counted the forces' work without contact.
+        const double halfway  = 0.5 * impulse * inverse_mass * kick_duration;
+        const double internal = halfway * nodes[Node::internal + d][n],
+                     external = halfway * nodes[Node::external + d][n];
+        const double work     = impulse * 0.5 * (before + v) - internal - external;
         books.contact_work += work;
+        books.strain -= internal;
+        books.external_work += external;
         if (inverse_mass == 0)
           books.external_work -= work;
         nodes[Node::contact_force + d][n] = impulse / last_dt;

@@ -93,7 +93,7 @@ private:
   /// 1/s, from and to which time [s].
   const double damping, damping_start, damping_end;
 
-  double time = 0, last_dt = 0;
+  double time = 0, last_dt = 0, kick_duration = 0;
   /// Owned nodes that contact may touch, also through hanging nodes.
   std::vector<unsigned int> contact_nodes;
   bool                      is_corrected = false;

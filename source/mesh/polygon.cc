@@ -148,8 +148,8 @@ patches_of(const std::vector<Point2> &corners, const std::vector<unsigned int> &
           // A patch shares the number along a side with the patch across that side.
           const unsigned int a = subdivisions[0], b = subdivisions[1], c = subdivisions[2];
           patches[0].n = {{a, b}};
-          patches[1].n = {{c, a}};
-          patches[2].n = {{b, c}};
+          patches[1].n = {{b, c}};
+          patches[2].n = {{c, a}};
         }
       return patches;
     }

@@ -86,7 +86,6 @@ public:
       }
     if (stop_requested)
       log.out() << "stopped by a signal at t = " << coupling.time() << " s\n";
-    count_work();
     coupling.timed.print(log.out(), comm);
     log.finish();
     progress.summary(report, verdict, directory.path());
@@ -128,8 +127,6 @@ private:
   {
     return mpi::any(stop_requested != 0, comm) || coupling.time() >= end_time * (1 - 1e-14);
   }
-
-  void count_work() {}
 
   std::vector<std::pair<std::string, std::string>> facts() const
   {

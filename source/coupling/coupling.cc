@@ -94,7 +94,10 @@ Coupling<dim>::advance(const double end_time)
   const double left = end_time - current_time;
   dt                = left <= dt ? left : std::min(dt, 0.5 * left);
 
-  timed("particles to grid", [&] { points.gather(current_time, dt); });
+  timed("particles to grid", [&] {
+    points.gather(current_time, dt);
+    timed.count("particle", points.n_particles());
+  });
   timed("structure forces", [&] { structure.assemble_forces(current_time); });
   timed("predictor", [&] {
     points.predict(dt);
@@ -107,6 +110,7 @@ Coupling<dim>::advance(const double end_time)
   timed("move", [&] {
     points.move(dt);
     structure.move(dt);
+    timed.count("particle", points.n_particles());
   });
   timed("penetration audit", [&] { contacts.audit(points, structure); });
 
@@ -114,9 +118,18 @@ Coupling<dim>::advance(const double end_time)
   current_dt = dt;
   ++n_steps;
 
-  timed("particle stress", [&] { points.update_stresses(current_time, dt); });
-  timed("element stress", [&] { structure.update_stresses(dt); });
-  timed("locate", [&] { points.locate(current_time); });
+  timed("particle stress", [&] {
+    points.update_stresses(current_time, dt);
+    timed.count("particle", points.n_particles());
+  });
+  timed("element stress", [&] {
+    structure.update_stresses(dt);
+    timed.count("element", structure.n_elements());
+  });
+  timed("locate", [&] {
+    points.locate(current_time);
+    timed.count("particle", points.n_particles());
+  });
   timed("checks", [&] { check_state(); });
   count_work();
 }
@@ -146,8 +159,6 @@ void
 Coupling<dim>::count_work()
 {
   particle_steps += points.n_particles();
-  for (const auto &body : structure.solids)
-    element_steps += body.mesh().n_elements();
   const auto &report = contacts.report();
   if (report.n_contacts > 0)
     {

@@ -171,7 +171,8 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
                                             octree.owned_region(),
                                             octree.triangulation.get_communicator());
   const double size = std::pow(made.volume, 1. / dim);
-  // A particle's box reaches into neighbouring cells, which is all that a rank knows besides its own.
+  // A particle's box reaches into neighbouring cells, which is all that a rank knows besides its
+  // own.
   if (transfer.shape == ParticleShape::gimp && size > 2 * octree.smallest_cell_size())
     throw body.error("Particle spacing",
                      "particles are larger than two cells",

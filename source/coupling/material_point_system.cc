@@ -218,11 +218,11 @@ MaterialPointSystem<dim>::move(const double dt)
     {
       // The fraction is meant for a stable step, so that shorter steps do not damp more.
       TransferOptions transfer = body.transfer;
-      const double rate = mpi::max(body.sweep.rate, octree.triangulation.get_communicator());
+      const double    rate     = mpi::max(body.sweep.rate, octree.triangulation.get_communicator());
       transfer.pic_fraction =
         1. - std::pow(1. - body.transfer.pic_fraction, std::min(1., dt * rate));
-      energy.kinetic += grid_to_particles(
-        octree, transfer, dt, shares_musl_field(body), field(body), body.points);
+      energy.kinetic +=
+        grid_to_particles(octree, transfer, dt, shares_musl_field(body), field(body), body.points);
     }
   energy.transfer -= energy.kinetic;
 }

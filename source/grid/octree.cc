@@ -91,8 +91,8 @@ Octree<dim>::partition(
     triangulation.signals.weight.connect([&](const typename Triangulation::cell_iterator &cell,
                                              const typename Triangulation::CellStatus) {
       // Nothing is added to these weights: the cell itself counts here.
-      return static_cast<unsigned int>(
-        1000. * (1. + weight(cell->center(), cell->extent_in_direction(0))));
+      return static_cast<unsigned int>(1000. *
+                                       (1. + weight(cell->center(), cell->extent_in_direction(0))));
     });
   triangulation.repartition();
   connection.disconnect();

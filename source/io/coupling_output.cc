@@ -171,16 +171,17 @@ CouplingOutput<dim>::write_particles(const MaterialPointBody<dim> &body,
                                  Layout<dim>::velocity,
                                  static_cast<unsigned int>(Layout<dim>::stress),
                                  Layout<dim>::density,
+                                 Layout<dim>::size,
                                  Layout<dim>::id};
-  const unsigned int width[]  = {dim, dim, n_stress, 1, 1};
+  const unsigned int width[]  = {dim, dim, n_stress, 1, 1, 1};
   const char *const  name[]   = {
-       "position", "velocity", n_stress == 1 ? "pressure" : "stress", "density", "id"};
-  const char *const                unit[] = {"m", "m/s", "Pa", "kg/m^3", "1"};
+       "position", "velocity", n_stress == 1 ? "pressure" : "stress", "density", "size", "id"};
+  const char *const                unit[] = {"m", "m/s", "Pa", "kg/m^3", "m", "1"};
   std::vector<std::vector<double>> copies;
   std::vector<Field>               fields;
-  for (unsigned int f = 0; f < 5; ++f)
+  for (unsigned int f = 0; f < 6; ++f)
     {
-      Field field{name[f], unit[f], {}, 1, f == 4};
+      Field field{name[f], unit[f], {}, 1, first[f] == Layout<dim>::id};
       for (unsigned int c = 0; c < width[f]; ++c)
         {
           const double *column = points.column(first[f] + c);

@@ -46,7 +46,7 @@ public:
   ContactCoupling<dim>       contacts;
   TimingTable                timed;
 
-  double        particle_steps = 0, element_steps = 0;
+  double        particle_steps = 0;
   std::uint64_t contact_steps = 0, unconverged_contact_steps = 0;
   /// Smallest g - R of all contacts since the last report [m]; the report resets it.
   double worst_gap = 0;

@@ -52,6 +52,15 @@ public:
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
+  /// Elements of deformable bodies on this rank.
+  unsigned int n_elements() const
+  {
+    unsigned int n = 0;
+    for (const auto &body : solids)
+      n += body.mesh().n_elements();
+    return n;
+  }
+
   /// Name of a body by its number among the surfaces.
   const std::string &body_name(const unsigned int surface_body) const
   {

@@ -110,6 +110,16 @@ MaterialPointBody<dim>::declare(Declaration &body)
               {"cell mean", "particle"},
               "cell mean: all particles of a cell share the mean of their volume strain rates, "
               "which keeps nearly incompressible material from locking and from pressure noise.");
+  body.quantity(
+    "Volume smoothing",
+    "0",
+    "1",
+    "beta",
+    "cell mean only: share of the way that a particle's volume per mass goes to its cell's "
+    "mean in a step as long as is stable, and less in shorter ones; keeps the sum of "
+    "volumes and takes away differences between particles that no cell feels.",
+    0.,
+    1.);
   body.flag(
     "Mean pressure in forces",
     false,
@@ -135,6 +145,7 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
   , material(materials.get(body.text("Material"), body))
   , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle
                                                              : VolumeStrain::cell_mean)
+  , volume_smoothing(body.quantity("Volume smoothing"))
   , field_name(body.text("Velocity field"))
   , radius_factor(body.quantity("Contact radius"))
   , damping_rate(body.quantity("Damping"))

@@ -199,6 +199,18 @@ MaterialPointSystem<dim>::apply_impulses()
 }
 
 template <int dim>
+double
+MaterialPointSystem<dim>::share_of_step(const MaterialPointBody<dim> &body,
+                                        const double                  share,
+                                        const double                  dt) const
+{
+  if (share == 0)
+    return 0;
+  const double rate = mpi::max(body.sweep.rate, octree.triangulation.get_communicator());
+  return 1. - std::pow(1. - share, std::min(1., dt * rate));
+}
+
+template <int dim>
 void
 MaterialPointSystem<dim>::move(const double dt)
 {
@@ -218,9 +230,7 @@ MaterialPointSystem<dim>::move(const double dt)
     {
       // The fraction is meant for a stable step, so that shorter steps do not damp more.
       TransferOptions transfer = body.transfer;
-      const double    rate     = mpi::max(body.sweep.rate, octree.triangulation.get_communicator());
-      transfer.pic_fraction =
-        1. - std::pow(1. - body.transfer.pic_fraction, std::min(1., dt * rate));
+      transfer.pic_fraction    = share_of_step(body, body.transfer.pic_fraction, dt);
       energy.kinetic +=
         grid_to_particles(octree, transfer, dt, shares_musl_field(body), field(body), body.points);
     }
@@ -235,14 +245,11 @@ MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
                                         const double            time,
                                         const double            dt)
 {
-  body.sweep = update_particle_stress(octree,
-                                      velocity,
-                                      place,
-                                      body.material,
-                                      body.transfer.shape,
-                                      body.volume_strain,
-                                      dt,
-                                      body.points);
+  const StressOptions options = {body.transfer.shape,
+                                 body.volume_strain,
+                                 share_of_step(body, body.volume_smoothing, dt),
+                                 dt};
+  body.sweep = update_particle_stress(octree, velocity, place, body.material, options, body.points);
   body.internal_energy += body.sweep.work;
   energy.internal += body.sweep.work;
   if (body.sweep.bad_row >= 0 && !failure)

@@ -21,10 +21,12 @@ public:
   const unsigned int   place;
   const Material      &material;
   const bool           gimp, cell_mean;
-  const double         dt;
+  const double         smoothing, dt;
   MaterialPoints<dim> &points;
   StressSweep          result{};
   Pack8 work{}, kinetic{}, smallest_density = splat<Pack8>(std::numeric_limits<double>::max());
+  /// Of the cell at hand [1/s, m^3/kg].
+  double mean_divergence = 0, mean_specific_volume = 0;
   /// Of the cell at hand: square of the largest particle speed, largest wave speed.
   Pack8 speed_square{}, wave_speed{};
   /// Velocity gradients of one cell's particles, kept while their mean is formed.
@@ -78,7 +80,13 @@ private:
   {
     points.means.reinit(octree.n_leaves());
     for (const auto &stray : points.strays)
-      points.means.add(stray.leaf, volume(stray.row), trace<dim>(stray_gradient(stray)));
+      {
+        const double v = volume(stray.row);
+        points.means.add_sums(stray.leaf,
+                              v,
+                              v * trace<dim>(stray_gradient(stray)),
+                              points.column(Layout::mass)[stray.row]);
+      }
   }
 
   double volume(const std::size_t row) const
@@ -92,7 +100,7 @@ private:
     const auto        &nodes = octree.nodes(leaf);
     const unsigned int begin = points.cell_begin()[leaf], end = points.cell_begin()[leaf + 1];
     gradients.resize((end - begin + pack_size - 1) / pack_size);
-    Pack8 weights{}, divergences{};
+    Pack8 weights{}, divergences{}, masses{};
     for (unsigned int row = begin, k = 0; row < end; row += pack_size, ++k)
       {
         const Vector<dim, Pack8> x = load_vector(points, Layout::position, row);
@@ -102,26 +110,31 @@ private:
         gradients[k] = gradient(PackShape<dim>(xi), inverse_size, nodes);
         if (cell_mean)
           {
-            const Pack8 v = load<Pack8>(points.column(Layout::mass) + row) /
-                            load<Pack8>(points.column(Layout::density) + row);
+            const Pack8 m       = load<Pack8>(points.column(Layout::mass) + row);
+            const Pack8 v       = m / load<Pack8>(points.column(Layout::density) + row);
             const Mask8 counted = inside(leaf, row, x) & first_lanes(end - row);
+            masses += select(counted, m, Pack8{});
             weights += select(counted, v, Pack8{});
             divergences += select(counted, Pack8(v * trace<dim, Pack8>(gradients[k])), Pack8{});
           }
       }
-    double mean = 0;
     if (cell_mean)
       {
-        points.means.add_sums(leaf, sum(weights), sum(divergences));
-        mean = points.means.mean(leaf);
+        points.means.add_sums(leaf, sum(weights), sum(divergences), sum(masses));
+        take_means(leaf);
       }
     for (unsigned int row = begin, k = 0; row < end; row += pack_size, ++k)
       {
         const Mask8 here = inside(leaf, row, load_vector(points, Layout::position, row));
-        update_rows(
-          row, std::min<unsigned int>(pack_size, end - row), here, size, mean, gradients[k]);
+        update_rows(row, std::min<unsigned int>(pack_size, end - row), here, size, gradients[k]);
       }
     end_cell(size);
+  }
+
+  void take_means(const unsigned int leaf)
+  {
+    mean_divergence      = points.means.mean(leaf);
+    mean_specific_volume = points.means.weight_per_mass(leaf);
   }
 
   // One square root a cell. Comparisons turn a NaN into 0 here; the sums find it.
@@ -161,12 +174,9 @@ private:
         l[d][e] = splat<Pack8>(scalar[d][e]);
     Mask8 first{};
     first[0] = -1;
-    update_rows(stray.row,
-                1,
-                first,
-                octree.size(stray.leaf),
-                cell_mean ? points.means.mean(stray.leaf) : 0.,
-                l);
+    if (cell_mean)
+      take_means(stray.leaf);
+    update_rows(stray.row, 1, first, octree.size(stray.leaf), l);
     end_cell(octree.size(stray.leaf));
   }
 
@@ -175,16 +185,15 @@ private:
                    const int           n_lanes,
                    const Mask8        &here,
                    const double        size,
-                   const double        mean,
                    Matrix<dim, Pack8> &l)
   {
     Pack8 divergence = trace<dim, Pack8>(l);
     if (cell_mean)
       {
-        const Pack8 change = (mean - divergence) / double(dim);
+        const Pack8 change = (mean_divergence - divergence) / double(dim);
         for (int d = 0; d < dim; ++d)
           l[d][d] += change;
-        divergence = splat<Pack8>(mean);
+        divergence = splat<Pack8>(mean_divergence);
       }
     Motion<dim, Pack8> motion;
     motion.velocity_gradient = l;
@@ -192,9 +201,12 @@ private:
     motion.length            = splat<Pack8>(size);
     double *const density    = points.column(Layout::density) + row;
     const Pack8   old        = load<Pack8>(density);
-    motion.density           = old / (1. + dt * divergence);
-    const Pack8 mass         = load<Pack8>(points.column(Layout::mass) + row);
-    const Pack8 mid_volume   = 0.5 * mass * (1. / old + 1. / motion.density);
+    // The sum of volumes is that of the unsmoothed ones: mean volume per mass is the cell's.
+    const Pack8 start =
+      smoothing > 0 ? 1. / ((1. - smoothing) / old + smoothing * mean_specific_volume) : old;
+    motion.density         = start / (1. + dt * divergence);
+    const Pack8 mass       = load<Pack8>(points.column(Layout::mass) + row);
+    const Pack8 mid_volume = 0.5 * mass * (1. / start + 1. / motion.density);
     store_first(density, select(here, motion.density, old), n_lanes);
     if constexpr (Material::needs_deformation_gradient)
       update_deformation(row, n_lanes, here, motion);
@@ -308,20 +320,20 @@ update_particle_stress(const Octree<dim>     &octree,
                        const NodeRecords     &velocity,
                        const unsigned int     velocity_place,
                        const MaterialVariant &material,
-                       const ParticleShape    shape,
-                       const VolumeStrain     volume_strain,
-                       const double           dt,
+                       const StressOptions   &options,
                        MaterialPoints<dim>   &points)
 {
   return std::visit(
     [&](const auto &model) {
+      const bool cell_mean = options.volume_strain == VolumeStrain::cell_mean;
       Sweep<dim, std::decay_t<decltype(model)>> sweep{octree,
                                                       velocity,
                                                       velocity_place,
                                                       model,
-                                                      shape == ParticleShape::gimp,
-                                                      volume_strain == VolumeStrain::cell_mean,
-                                                      dt,
+                                                      options.shape == ParticleShape::gimp,
+                                                      cell_mean,
+                                                      cell_mean ? options.volume_smoothing : 0.,
+                                                      options.dt,
                                                       points};
       sweep.run();
       return sweep.result;
@@ -356,9 +368,7 @@ initialise_particle_stress(const MaterialVariant &material, MaterialPoints<dim> 
                                               const NodeRecords &,     \
                                               const unsigned int,      \
                                               const MaterialVariant &, \
-                                              const ParticleShape,     \
-                                              const VolumeStrain,      \
-                                              const double,            \
+                                              const StressOptions &,   \
                                               MaterialPoints<dim> &);  \
   template void        initialise_particle_stress(const MaterialVariant &, MaterialPoints<dim> &);
 

@@ -47,9 +47,11 @@ public:
   const MaterialVariant &material;
   TransferOptions        transfer;
   VolumeStrain           volume_strain;
-  StressUpdate           stress_update;
-  std::string            field_name;
-  unsigned int           field = 0;
+  /// Per stable step [1].
+  double       volume_smoothing;
+  StressUpdate stress_update;
+  std::string  field_name;
+  unsigned int field = 0;
   /// Contact radius over particle size [1].
   double radius_factor;
   /// Acceleration [m/s^2] besides gravity, or none.

@@ -72,7 +72,10 @@ public:
   const dealii::Tensor<1, dim>      gravity;
 
 private:
-  void             make_fields();
+  /// What is given per stable step of the body's cells, for a step of length dt. Collective.
+  double
+       share_of_step(const MaterialPointBody<dim> &body, const double share, const double dt) const;
+  void make_fields();
   NodalField<dim> &field(const MaterialPointBody<dim> &body);
   bool             shares_musl_field(const MaterialPointBody<dim> &body) const;
   void             update_stress(MaterialPointBody<dim> &body,

@@ -30,6 +30,18 @@ struct StressSweep
   long bad_row = -1;
 };
 
+/// Choices that hold for one sweep over a body.
+struct StressOptions
+{
+  ParticleShape shape         = ParticleShape::linear;
+  VolumeStrain  volume_strain = VolumeStrain::cell_mean;
+  /// Share of the way that specific volumes go to their cell's mean in this step [1]; only with
+  /// cell_mean.
+  double volume_smoothing = 0;
+  /// [s]
+  double dt = 0;
+};
+
 /**
  * Strain increments from a grid velocity and the material's answer, for all
  * particles of a body at their positions at the start of the step.
@@ -41,9 +53,7 @@ StressSweep update_particle_stress(const Octree<dim>     &octree,
                                    const NodeRecords     &velocity,
                                    const unsigned int     velocity_place,
                                    const MaterialVariant &material,
-                                   const ParticleShape    shape,
-                                   const VolumeStrain     volume_strain,
-                                   const double           dt,
+                                   const StressOptions   &options,
                                    MaterialPoints<dim>   &points);
 
 /// Stress (pressure) of particles that have just been made, from their density, at rest.

@@ -3,14 +3,13 @@
 import os
 import re
 import subprocess
-import sys
 
 from run_case import Test
 
 test = Test()
 script = os.environ["CORACLE_TOP"] + "/prm/vortex/convergence.py"
 for case in ("vortex", "smooth"):
-    command = [sys.executable, script, os.environ["CORACLE"], "-c", case, "-l", "3", "-o", case]
+    command = [script, os.environ["CORACLE"], "-c", case, "-l", "3", "-o", case]
     done = subprocess.run(command + ["--set", "End time=0.25"], stdout=subprocess.PIPE, text=True)
     print(done.stdout)
     orders = [float(o) for o in re.findall(r"mean error \S+ m \(order +([-.\d]+)\)", done.stdout)]

@@ -105,11 +105,13 @@ MaterialPointBody<dim>::declare(Declaration &body)
               {"musl", "usf", "usl"},
               "Which velocities strain the particles: those gathered again from moved particles "
               "(musl), those at the start (usf) or at the end (usl) of the step.");
-  body.choice("Volume strain",
-              "cell mean",
-              {"cell mean", "particle"},
-              "cell mean: all particles of a cell share the mean of their volume strain rates, "
-              "which keeps nearly incompressible material from locking and from pressure noise.");
+  body.choice(
+    "Volume strain",
+    "particle",
+    {"particle", "cell mean"},
+    "particle: each follows the divergence at its own place; cell mean: all particles of a "
+    "cell share the mean, which keeps nearly incompressible flow from locking and forces "
+    "from noise, but lets water under standing pressure begin to boil.");
   body.quantity(
     "Volume smoothing",
     "0",

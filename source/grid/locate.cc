@@ -68,6 +68,28 @@ take_positions(const Octree<dim> &octree, const double margin_of_shape, Material
   return leavers;
 }
 
+// A particle with an extent moves with the mean of the grid over its box, which is not zero at a
+// closed face: its centre stays at the face, by less than its own reach.
+template <int dim>
+void
+hold_at_closed_faces(const BoxBoundary<dim>         &boundary,
+                     const dealii::BoundingBox<dim> &box,
+                     const double                    margin_of_shape,
+                     const std::size_t               row,
+                     MaterialPoints<dim>            &points)
+{
+  const double reach = margin_of_shape * points.column(Layout<dim>::size)[row];
+  for (int d = 0; d < dim; ++d)
+    {
+      double      &x     = points.column(Layout<dim>::position + d)[row];
+      const double lower = box.lower_bound(d), upper = box.upper_bound(d);
+      if (x < lower && x > lower - reach && boundary.condition(2 * d) != FaceCondition::open)
+        x = lower;
+      if (x > upper && x < upper + reach && boundary.condition(2 * d + 1) != FaceCondition::open)
+        x = upper;
+    }
+}
+
 constexpr int tag_migration = 7310;
 
 // Neighbours are the ranks that own ghost leaves; each gets one message a step, possibly empty.
@@ -123,6 +145,7 @@ move_and_locate(const Octree<dim>      &octree,
     {
       if (points.is_hole(row))
         continue;
+      hold_at_closed_faces(boundary, octree.box(), margin_of_shape, row, points);
       const dealii::Point<dim> x    = points.position(row);
       const int                leaf = octree.find(x);
       if (leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves()))

@@ -78,6 +78,13 @@ MaterialPointBody<dim>::declare(Declaration &body)
                 "",
                 "m/s^2",
                 "Acceleration besides gravity, one expression for each direction.");
+  declare_method(body);
+}
+
+template <int dim>
+void
+MaterialPointBody<dim>::declare_method(Declaration &body)
+{
   body.choice(
     "Shape functions",
     "linear",
@@ -223,7 +230,14 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
   set_initial_pressure(body);
   initialise_particle_stress<dim>(material, points);
   sort_by_leaf(octree, margin_of_shape(), points);
+  find_rates(octree);
+}
 
+template <int dim>
+void
+MaterialPointBody<dim>::find_rates(const Octree<dim> &octree)
+{
+  using Layout        = ParticleLayout<dim>;
   double largest_rate = 0;
   for (std::size_t row = 0; row < points.n_rows(); ++row)
     {

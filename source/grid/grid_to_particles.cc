@@ -129,14 +129,7 @@ private:
                         n_lanes);
           }
         if constexpr (affine)
-          for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e)
-              {
-                double *const column = points.column(affine_column + dim * d + e) + row;
-                store_first(column,
-                            select(here, taken.gradient[d][e], load<Pack8>(column)),
-                            n_lanes);
-              }
+          store_affine(row, n_lanes, here, taken);
         const Pack8 m = load<Pack8>(points.column(Layout::mass) + row);
         Pack8       square{};
         for (int d = 0; d < dim; ++d)
@@ -160,6 +153,19 @@ private:
       }
     if constexpr (remap)
       sums.give_to(field.gathered(), nodes);
+  }
+
+  void store_affine(const std::size_t        row,
+                    const int                n_lanes,
+                    const Mask8             &here,
+                    const Taken<dim, Pack8> &taken)
+  {
+    for (int d = 0; d < dim; ++d)
+      for (int e = 0; e < dim; ++e)
+        {
+          double *const column = points.column(affine_column + dim * d + e) + row;
+          store_first(column, select(here, taken.gradient[d][e], load<Pack8>(column)), n_lanes);
+        }
   }
 
   void sweep_stray(const typename MaterialPoints<dim>::Stray &stray)

@@ -64,6 +64,10 @@ public:
 private:
   void generate(const Parameters &body, const Octree<dim> &octree);
   void set_initial_pressure(const Parameters &body);
+  /// Bounds on the first step.
+  void find_rates(const Octree<dim> &octree);
+
+  static void declare_method(Declaration &body);
 
   double damping_rate, damping_end;
 };

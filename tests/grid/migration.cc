@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Particles that wander at random stay whole, are on the rank that owns their leaf, and are all accounted
-// for; those that leave are counted at an open face and named at a closed one.
+// Particles that wander at random stay whole, are on the rank that owns their leaf, and are all
+// accounted for; those that leave are counted at an open face and named at a closed one.
 #include <coracle/base/exceptions.h>
 
 #include "grid/scene.h"
@@ -9,8 +9,8 @@ using namespace coracle;
 
 const MPI_Comm comm = MPI_COMM_WORLD;
 
-// Every particle is with its leaf's owner, in its home cell or listed once as a stray, and its columns
-// are still those of its id.
+// Every particle is with its leaf's owner, in its home cell or listed once as a stray, and its
+// columns are still those of its id.
 template <int dim>
 bool
 is_consistent(const Scene<dim> &scene, const double margin, const MaterialPoints<dim> &points)
@@ -33,9 +33,9 @@ is_consistent(const Scene<dim> &scene, const double margin, const MaterialPoints
         bool inside = true;
         for (int d = 0; d < dim; ++d)
           {
-            const double x = points.column(Layout::position + d)[row],
+            const double x     = points.column(Layout::position + d)[row],
                          reach = margin * points.column(Layout::size)[row];
-            inside = inside && x - reach >= scene.octree.lower(leaf)[d] &&
+            inside             = inside && x - reach >= scene.octree.lower(leaf)[d] &&
                      x + reach < scene.octree.lower(leaf)[d] + scene.octree.size(leaf);
           }
         visits[row] += inside;
@@ -62,7 +62,8 @@ template <int dim>
 bool
 ledger_closes(const MaterialPoints<dim> &points)
 {
-  const std::int64_t open = std::int64_t(points.ledger.created) - std::int64_t(points.ledger.removed) -
+  const std::int64_t open = std::int64_t(points.ledger.created) -
+                            std::int64_t(points.ledger.removed) -
                             std::int64_t(points.n_particles());
   return mpi::sum(open, comm) == 0;
 }
@@ -100,11 +101,13 @@ test_walk(const OctreeDescription<dim> &description, const double margin)
       if (step % 7 == 6)
         {
           sort_by_leaf(scene.octree, margin, points);
-          good = is_consistent(scene, margin, points) && points.n_rows() == points.n_particles() && good;
+          good =
+            is_consistent(scene, margin, points) && points.n_rows() == points.n_particles() && good;
           sorted_strays += points.strays.size();
         }
     }
-  const auto ids    = sum_over_particles(points, [&](const std::size_t row) { return double(points.id(row)); });
+  const auto ids =
+    sum_over_particles(points, [&](const std::size_t row) { return double(points.id(row)); });
   const auto square = sum_over_particles(points, [&](const std::size_t row) {
     return std::pow(double(points.id(row)), 2);
   });
@@ -124,16 +127,16 @@ template <int dim>
 void
 test_open_face()
 {
-  using Layout     = ParticleLayout<dim>;
-  auto description = dyadic_box<dim>();
+  using Layout                    = ParticleLayout<dim>;
+  auto                description = dyadic_box<dim>();
   Scene<dim>          scene(description, FaceCondition::open);
   MaterialPoints<dim> points("spray", ParticleNeeds());
   const unsigned int  n = 400;
   add_particles(scene, n, 0., points);
   sort_by_leaf(scene.octree, 0., points);
   // The same places on all ranks.
-  std::vector<double>  x_0;
-  Random               random;
+  std::vector<double> x_0;
+  Random              random;
   for (unsigned int i = 0; i < n; ++i)
     x_0.push_back(random.in(scene.octree.box())[0]);
   const double upper = scene.octree.box().upper_bound(0), middle = 0.5 * upper;
@@ -160,8 +163,8 @@ test_open_face()
       const auto removed = mpi::sum(points.ledger.removed, comm);
       good = good && removed >= gone && removed <= gone + unsure && ledger_closes(points);
     }
-  deallog << "removed as they pass, in the end all " << mpi::sum(points.ledger.removed, comm) << ": "
-          << !mpi::any(!good, comm) << std::endl;
+  deallog << "removed as they pass, in the end all " << mpi::sum(points.ledger.removed, comm)
+          << ": " << !mpi::any(!good, comm) << std::endl;
   sort_by_leaf(scene.octree, 0., points);
   deallog << "nothing left, no rows, no occupied cells: "
           << !mpi::any(points.n_rows() > 0 || !points.occupied_cells().empty(), comm) << std::endl;
@@ -194,7 +197,8 @@ test_closed_face()
       deallog << "ranks that fail: " << mpi::sum<unsigned int>(!details.empty(), comm) << std::endl;
       for (const auto &text : all)
         if (!text.empty())
-          deallog << text.substr(0, text.find(", velocity")) << text.substr(text.find(" m/s:")) << std::endl;
+          deallog << text.substr(0, text.find(", velocity")) << text.substr(text.find(" m/s:"))
+                  << std::endl;
       deallog << "the ledger closes all the same: " << ledger_closes(points) << std::endl;
     }
 }

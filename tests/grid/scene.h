@@ -35,7 +35,8 @@ private:
   std::mt19937 generator{4711};
 };
 
-/// n[d] cells of a size from an origin; two levels finer in a part of the box that touches no face of it.
+/// n[d] cells of a size from an origin; two levels finer in a part of the box that touches no face
+/// of it.
 template <int dim>
 OctreeDescription<dim>
 refined_box(const std::array<unsigned int, dim> &n, const double cell_size, const double origin)
@@ -77,7 +78,8 @@ all_faces(const FaceCondition condition)
 template <int dim>
 struct Scene
 {
-  explicit Scene(const OctreeDescription<dim> &description, const FaceCondition faces = FaceCondition::open)
+  explicit Scene(const OctreeDescription<dim> &description,
+                 const FaceCondition           faces = FaceCondition::open)
     : octree(description, {}, MPI_COMM_WORLD)
     , boundary(all_faces<dim>(faces), octree)
     , field(octree, boundary)
@@ -119,10 +121,14 @@ add_particle(const Scene<dim>         &scene,
   ++points.ledger.created;
 }
 
-/// Random particles, and one exactly on a face, a hanging node (dyadic box) and the box's upper corner.
+/// Random particles, and one exactly on a face, a hanging node (dyadic box) and the box's upper
+/// corner.
 template <int dim>
 void
-add_particles(const Scene<dim> &scene, const unsigned int n, const double size, MaterialPoints<dim> &points)
+add_particles(const Scene<dim>    &scene,
+              const unsigned int   n,
+              const double         size,
+              MaterialPoints<dim> &points)
 {
   dealii::Point<dim> inner_lower, inner_upper;
   for (int d = 0; d < dim; ++d)

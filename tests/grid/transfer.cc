@@ -25,24 +25,28 @@ shake(const Scene<dim> &scene, const double margin, MaterialPoints<dim> &points)
     for (int d = 0; d < dim; ++d)
       {
         const double reach = margin * points.column(Layout::size)[row];
-        const double x     = points.column(Layout::position + d)[row] +
-                         0.02 * std::sin(17. * points.id(row) + d);
+        const double x =
+          points.column(Layout::position + d)[row] + 0.02 * std::sin(17. * points.id(row) + d);
         // Those at the upper corner stay there.
         points.column(Layout::next_position + d)[row] =
           std::min(scene.octree.box().upper_bound(d) - reach,
                    std::max(scene.octree.box().lower_bound(d) + reach,
-                            points.id(row) % 100 == 22 ? points.column(Layout::position + d)[row] : x));
+                            points.id(row) % 100 == 22 ? points.column(Layout::position + d)[row]
+                                                       : x));
       }
   move_and_locate(scene.octree, scene.boundary, margin, 0., points);
 }
 
 template <int dim>
 void
-test_gather(const ParticleNeeds &needs, const TransferOptions &options)
+test_gather(const ParticleNeeds &needs, const TransferOptions &options, const bool refined)
 {
-  using Layout   = ParticleLayout<dim>;
-  using Gathered = typename NodalField<dim>::Gathered;
-  Scene<dim>          scene(dyadic_box<dim>());
+  using Layout     = ParticleLayout<dim>;
+  using Gathered   = typename NodalField<dim>::Gathered;
+  auto description = dyadic_box<dim>();
+  if (!refined)
+    description.refinements.clear();
+  Scene<dim>          scene(description);
   MaterialPoints<dim> points("dust", needs);
   add_particles(scene, 420, options.shape == ParticleShape::gimp ? 0.02 : 0., points);
   shake(scene, options.shape == ParticleShape::gimp ? 0.5 : 0., points);
@@ -56,7 +60,8 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
   double difference = 0;
   for (unsigned int node = 0; node < scene.octree.n_nodes(); ++node)
     for (unsigned int k = 0; k < 8; ++k)
-      difference = std::max(difference, std::fabs(apart[node][k] - scene.field.gathered()[node][k]));
+      difference =
+        std::max(difference, std::fabs(apart[node][k] - scene.field.gathered()[node][k]));
   scene.field.sum();
 
   // Sums over particles and nodes: mass and its first moment, momentum, force and its first moment,
@@ -67,8 +72,9 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
   bool                   positive = true;
   for (std::size_t row = 0; row < points.n_rows(); ++row)
     {
-      const double m = points.column(Layout::mass)[row], v = m / points.column(Layout::density)[row];
-      const auto   x = points.position(row);
+      const double m = points.column(Layout::mass)[row],
+                   v = m / points.column(Layout::density)[row];
+      const auto x   = points.position(row);
       m_p += m;
       x_p += m * x;
       const int  leaf = points.is_hole(row) ? 0 : scene.octree.find(x);
@@ -79,9 +85,10 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
           p_p[d] += m * v_d;
           for (int e = 0; e < dim; ++e)
             {
-              const double stress = needs.isotropic_stress ?
-                                      (d == e ? -points.column(Layout::stress)[row] : 0.) :
-                                      points.column(Layout::stress + Symmetric<dim, double>::index(d, e))[row];
+              const double stress =
+                needs.isotropic_stress
+                  ? (d == e ? -points.column(Layout::stress)[row] : 0.)
+                  : points.column(Layout::stress + Symmetric<dim, double>::index(d, e))[row];
               s_p[d][e] -= v * stress;
               scale_f += std::fabs(v * stress) / 0.03;
               l_p[d][e] += m * v_d * x[e];
@@ -111,7 +118,8 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
     }
   bool mass = equal(m_p, m_n, m_p), momentum = true, force = true, moment = true, angular = true,
        centre = true;
-  // A mean pressure per cell is volume-weighted, so that the sum of all stays; a single one does not.
+  // A mean pressure per cell is volume-weighted, so that the sum of all stays; a single one does
+  // not.
   for (int d = 0; d < dim; ++d)
     {
       centre   = equal(x_p[d], x_n[d], m_p) && centre;
@@ -124,10 +132,11 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
         for (int e = 0; e < dim; ++e)
           angular = equal(l_p[d][e] - l_p[e][d], l_n[d][e] - l_n[e][d], m_p) && angular;
     }
-  deallog << "mass, centre, momentum, force, its moment, angular momentum: " << mass << ' ' << centre
-          << ' ' << momentum << ' ' << force << ' ' << moment << ' ' << angular << std::endl;
-  deallog << "in one sweep or in two, nodes have mass >= 0: " << (mpi::max(difference, comm) < 1e-12)
-          << ' ' << !mpi::any(!positive, comm) << std::endl;
+  deallog << "mass, centre, momentum, force, its moment, angular momentum: " << mass << ' '
+          << centre << ' ' << momentum << ' ' << force << ' ' << moment << ' ' << angular
+          << std::endl;
+  deallog << "in one sweep or in two, nodes have mass >= 0: "
+          << (mpi::max(difference, comm) < 1e-12) << ' ' << !mpi::any(!positive, comm) << std::endl;
   deallog << "some particles are strays: " << mpi::any(!points.strays.empty(), comm) << std::endl;
 
   // And back: what particles then have is what nodes had.
@@ -149,20 +158,22 @@ test_gather(const ParticleNeeds &needs, const TransferOptions &options)
                 const double v_d = points.column(Layout::velocity + d)[row];
                 p_back[d] += m * v_d;
                 for (int e = 0; e < dim; ++e)
-                  back[d][e] += m * v_d * x[e] + m *
-                                                   points.column(points.layout().affine + dim * d + e)[row] *
-                                                   xi[e] * (1 - xi[e]) *
-                                                   std::pow(scene.octree.size(leaf), 2);
+                  back[d][e] +=
+                    m * v_d * x[e] + m * points.column(points.layout().affine + dim * d + e)[row] *
+                                       xi[e] * (1 - xi[e]) * std::pow(scene.octree.size(leaf), 2);
               }
           }
       bool kept = true;
       for (int d = 0; d < dim; ++d)
         {
           kept = equal(p_back[d], p_p[d], m_p) && kept;
-          for (int e = 0; e < dim; ++e)
+          // A hanging node follows the mean of its parents, whose spin about it is lost.
+          for (int e = 0; e < dim && !refined; ++e)
             kept = equal(back[d][e] - back[e][d], l_p[d][e] - l_p[e][d], m_p) && kept;
         }
-      deallog << "APIC keeps momentum and angular momentum there and back: " << kept << std::endl;
+      deallog << (refined ? "APIC keeps momentum there and back: "
+                          : "APIC keeps momentum and angular momentum there and back: ")
+              << kept << std::endl;
     }
 }
 
@@ -206,19 +217,22 @@ test_linear_field(const ParticleNeeds &needs, const TransferOptions &options)
     if (!points.is_hole(row))
       for (int d = 0; d < dim; ++d)
         {
-          const auto   x = points.position(row);
-          const double grid = v(x, d) + dt * g[d], flip = old[Layout::velocity + d][row] + dt * g[d];
-          const double expected = options.velocity == VelocityTransfer::apic ?
-                                    grid :
-                                    (1 - options.pic_fraction) * flip + options.pic_fraction * grid;
+          const auto   x    = points.position(row);
+          const double grid = v(x, d) + dt * g[d],
+                       flip = old[Layout::velocity + d][row] + dt * g[d];
+          const double expected =
+            options.velocity == VelocityTransfer::apic
+              ? grid
+              : (1 - options.pic_fraction) * flip + options.pic_fraction * grid;
           velocities =
             velocities && std::fabs(points.column(Layout::velocity + d)[row] - expected) < 1e-13;
-          places = places &&
-                   std::fabs(points.column(Layout::next_position + d)[row] - x[d] - dt * grid) < 1e-13;
+          places = places && std::fabs(points.column(Layout::next_position + d)[row] - x[d] -
+                                       dt * grid) < 1e-13;
           if (needs.affine)
             for (int e = 0; e < dim; ++e)
-              gradients = gradients &&
-                          std::fabs(points.column(points.layout().affine + dim * d + e)[row] - a(d, e)) < 1e-12;
+              gradients =
+                gradients && std::fabs(points.column(points.layout().affine + dim * d + e)[row] -
+                                       a(d, e)) < 1e-12;
         }
   deallog << "velocities, places, gradients: " << !mpi::any(!velocities, comm) << ' '
           << !mpi::any(!places, comm) << ' ' << !mpi::any(!gradients, comm) << std::endl;
@@ -233,11 +247,12 @@ test_linear_field(const ParticleNeeds &needs, const TransferOptions &options)
       difference = std::max(difference,
                             std::fabs(given[node][Gathered::momentum + d] -
                                       scene.field.gathered()[node][Gathered::momentum + d]));
-  deallog << "momenta given back are those gathered afterwards: " << (mpi::max(difference, comm) < 1e-12)
-          << std::endl;
+  deallog << "momenta given back are those gathered afterwards: "
+          << (mpi::max(difference, comm) < 1e-12) << std::endl;
 }
 
-// The pieces of a cut particle against a sum over its box, in boxes so small that no cell face cuts them.
+// The pieces of a cut particle against a sum over its box, in boxes so small that no cell face cuts
+// them.
 template <int dim>
 void
 test_cut()
@@ -256,7 +271,9 @@ test_cut()
       // Multiples of 1/128; all cell faces are multiples of 1/32.
       dealii::Point<dim> x;
       for (int d = 0; d < dim; ++d)
-        x[d] = std::floor(128 * (1. / 32 + random() * (scene.octree.box().side_length(d) - 1. / 16))) / 128;
+        x[d] =
+          std::floor(128 * (1. / 32 + random() * (scene.octree.box().side_length(d) - 1. / 16))) /
+          128;
       MaterialPoints<dim> points("one", needs);
       add_particle(scene, x, i, 1. / 32, points);
       sort_by_leaf(scene.octree, 0.5, points);
@@ -272,8 +289,9 @@ test_cut()
           for (int d = 0; d < dim; ++d)
             y[d] = x[d] + ((b >> (3 * d)) % 8 - 3.5) / 256;
           const int    leaf = scene.octree.find(y);
-          const double h    = scene.octree.size(leaf), m = points.column(Layout::mass)[0] / n_boxes;
-          const double pv   = points.column(Layout::stress)[0] * m / points.column(Layout::density)[0];
+          const double h = scene.octree.size(leaf), m = points.column(Layout::mass)[0] / n_boxes;
+          const double pv =
+            points.column(Layout::stress)[0] * m / points.column(Layout::density)[0];
           for (unsigned int c = 0; c < scene.octree.n_corners; ++c)
             {
               const unsigned int     node = scene.octree.nodes(leaf)[c];
@@ -291,7 +309,8 @@ test_cut()
               expected[node][Gathered::mass] += m * n;
               for (int d = 0; d < dim; ++d)
                 {
-                  expected[node][Gathered::momentum + d] += m * n * points.column(Layout::velocity + d)[0];
+                  expected[node][Gathered::momentum + d] +=
+                    m * n * points.column(Layout::velocity + d)[0];
                   expected[node][Gathered::force + d] += pv * slope[d];
                 }
             }
@@ -321,7 +340,9 @@ test()
           options.shape        = shape;
           options.velocity     = apic ? VelocityTransfer::apic : VelocityTransfer::flip;
           options.pic_fraction = 0.3;
-          test_gather<dim>(needs, options);
+          test_gather<dim>(needs, options, true);
+          if (apic)
+            test_gather<dim>(needs, options, false);
           if (isotropic)
             test_linear_field<dim>(needs, options);
           deallog.pop();

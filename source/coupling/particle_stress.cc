@@ -204,7 +204,12 @@ private:
     // The sum of volumes is that of the unsmoothed ones: mean volume per mass is the cell's.
     const Pack8 start =
       smoothing > 0 ? 1. / ((1. - smoothing) / old + smoothing * mean_specific_volume) : old;
-    motion.density         = start / (1. + dt * divergence);
+    motion.density = start / (1. + dt * divergence);
+    // A lone particle may be asked to lose all its volume in a step: to first order the same, but
+    // always positive. F keeps its own volume.
+    if constexpr (!Material::needs_deformation_gradient)
+      motion.density =
+        select(divergence < 0., Pack8(start * (1. - dt * divergence)), motion.density);
     const Pack8 mass       = load<Pack8>(points.column(Layout::mass) + row);
     const Pack8 mid_volume = 0.5 * mass * (1. / start + 1. / motion.density);
     store_first(density, select(here, motion.density, old), n_lanes);

@@ -107,8 +107,12 @@ test_expansion(const MaterialVariant &material,
   const int    n = 20;
   for (int i = 0; i < n; ++i)
     {
-      sweep = update_particle_stress<dim>(
-        scene.octree, linear_velocity(scene.octree, l), 1, material, {shape, volume, 0.3, dt}, *points);
+      sweep = update_particle_stress<dim>(scene.octree,
+                                          linear_velocity(scene.octree, l),
+                                          1,
+                                          material,
+                                          {shape, volume, 0.3, dt},
+                                          *points);
       work += sweep.work;
     }
   const double expected = density / std::pow(1 + dt * divergence, n);

@@ -37,7 +37,8 @@ case_text(const unsigned int n, const bool hanging_nodes)
   prm << "subsection Grid\n  set Upper corner = 1, 1, " << height
       << "\n  set Lower corner = 0, 0, 0\n"
       << "  set Cell size = " << (hanging_nodes ? 2. : 1.) / n << "\n";
-  // Half of the water in fine cells of 8 particles, half in coarse ones of 64, hanging nodes between.
+  // Half of the water in fine cells of 8 particles, half in coarse ones of 64, hanging nodes
+  // between.
   if (hanging_nodes)
     prm << "  subsection Refinement\n    subsection half\n      set Lower corner = 0, 0, 0\n"
         << "      set Upper corner = 0.5, 1, 1\n      set Level = 1\n    end\n  end\n";

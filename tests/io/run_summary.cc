@@ -235,10 +235,10 @@ test_probes()
   for (const std::string &line : lines_of("probes.csv"))
     deallog << line << std::endl;
 
-  for (const std::string &bad : {"Body = water",
-                                 "Kind = point\nset Body = obstacle",
-                                 "Body = obstacle",
-                                 "Kind = point\nset Body = water\nset Position = 1, 1"})
+  for (const std::string bad : {"Body = water",
+                                "Kind = point\nset Body = obstacle",
+                                "Body = obstacle",
+                                "Kind = point\nset Body = water\nset Position = 1, 1"})
     {
       file.read_text("subsection Probes\nsubsection tip\nset " + bad + "\nend\nend\n");
       try

@@ -98,7 +98,7 @@ test_sort()
           const double first = points.column(0)[row];
           for (unsigned int k = 0; k < points.columns.n_columns(); ++k)
             good = good && points.column(k)[row] == first + k;
-          good = good && home((first - 1) / 100) == int(c) && first > last;
+          good = good && home((first - 1) / 100) == c && first > last;
           last = first;
         }
       occupied += points.cell_begin()[c + 1] > points.cell_begin()[c];

@@ -43,6 +43,11 @@ test(const double load, const double w, const double u)
   for (unsigned int n = 0; n < body->mesh().n_nodes(); ++n)
     if (body->mesh().nodes[n][0] > 1 - 1e-12)
       tip += body->displacement(n) / 7.;
+  const auto energies = body->energies();
+  deallog << "P L^2 / (E I) = " << load << ": w within 1 % " << std::boolalpha
+          << (std::abs(-tip[1] / w - 1) < 0.01) << ", u within 2 % "
+          << (std::abs(-tip[0] / u - 1) < 0.02) << ", at rest "
+          << (energies.kinetic < 1e-4 * energies.strain) << std::endl;
 }
 } // namespace
 

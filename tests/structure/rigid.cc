@@ -96,7 +96,6 @@ motion()
       square,
     gravity);
   const double dt    = 0.01;
-  double       work  = 0;
   const auto   start = held->energies();
   for (int i = 0; i < 100; ++i)
     {

@@ -183,7 +183,7 @@ SolidBody<dim>::kick(const double duration, const double dt)
       const double *const        f_int        = nodes[Node::internal + d],
                           *const f_ext        = nodes[Node::external + d],
                           *const inverse_mass = nodes[Node::inverse_mass + d];
-      // Rows from n on, a pack of them or one; prescribed directions keep their velocity for now.
+      // Rows from n on, a pack of them or one; prescribed directions keep their velocity here.
       const auto kick_rows = [&](auto *const type, const unsigned int n) {
         using T        = std::remove_pointer_t<decltype(type)>;
         const T before = load<T>(v + n), inverse = load<T>(inverse_mass + n),

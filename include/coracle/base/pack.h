@@ -156,7 +156,7 @@ template <typename T, typename F>
 inline T
 each_lane(const T &value, const F &function)
 {
-  T result;
+  T result{};
   for (int l = 0; l < PackTraits<T>::size; ++l)
     result[l] = function(value[l]);
   return result;

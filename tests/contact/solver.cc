@@ -4,7 +4,7 @@
 // exactly mu g and holds it below; momentum and angular momentum are conserved to
 // round-off, also with a rigid body.
 
-#include <eigen3/Eigen/Dense>
+#include <deal.II/lac/lapack_full_matrix.h>
 
 #include "scene.h"
 
@@ -125,58 +125,67 @@ struct Problem
 std::vector<dealii::Tensor<1, 2>>
 try_all(const Problem<2> &problem, const double dt)
 {
-  const unsigned int n = problem.contacts.size(), m = 2 * problem.unknowns.size();
-  Eigen::MatrixXd    J = Eigen::MatrixXd::Zero(n, m);
-  Eigen::VectorXd    v(m), w(m), target(n);
+  const unsigned int         n = problem.contacts.size(), m = 2 * problem.unknowns.size();
+  dealii::FullMatrix<double> J(n, m), A(n, n);
+  dealii::Vector<double>     v(m), w(m), missing(n);
   for (unsigned int i = 0; i < m; ++i)
     {
       v(i) = problem.unknowns[i / 2].velocity[i % 2];
       w(i) = problem.unknowns[i / 2].inverse_mass[i % 2];
     }
   for (unsigned int c = 0; c < n; ++c)
+    for (unsigned int side = 0; side < 2; ++side)
+      for (std::size_t e = problem.rows.begin[2 * c + side];
+           e < problem.rows.begin[2 * c + side + 1];
+           ++e)
+        for (unsigned int d = 0; d < 2; ++d)
+          J(c, 2 * problem.rows.entries[e].unknown + d) +=
+            (side == 0 ? 1 : -1) * problem.rows.entries[e].weight * problem.contacts[c].normal[d];
+  for (unsigned int c = 0; c < n; ++c)
     {
-      target(c) = problem.target(c, dt);
-      for (unsigned int side = 0; side < 2; ++side)
-        for (std::size_t e = problem.rows.begin[2 * c + side];
-             e < problem.rows.begin[2 * c + side + 1];
-             ++e)
-          for (unsigned int d = 0; d < 2; ++d)
-            J(c, 2 * problem.rows.entries[e].unknown + d) +=
-              (side == 0 ? 1 : -1) * problem.rows.entries[e].weight * problem.contacts[c].normal[d];
+      missing(c) = problem.target(c, dt);
+      for (unsigned int i = 0; i < m; ++i)
+        missing(c) -= J(c, i) * v(i);
+      for (unsigned int k = 0; k < n; ++k)
+        for (unsigned int i = 0; i < m; ++i)
+          A(c, k) += J(c, i) * w(i) * J(k, i);
     }
-  const Eigen::MatrixXd             A = J * w.asDiagonal() * J.transpose();
-  std::vector<dealii::Tensor<1, 2>> result(problem.unknowns.size());
   for (unsigned int set = 0; set < (1u << n); ++set)
     {
-      std::vector<int> active;
-      for (unsigned int c = 0; c < n; ++c)
-        if (set & (1u << c))
-          active.push_back(c);
-      const Eigen::VectorXd missing = target - J * v;
-      Eigen::VectorXd       lambda  = Eigen::VectorXd::Zero(n);
-      if (!active.empty())
+      // Rows outside the set are those of a unit matrix with nothing asked for.
+      dealii::LAPACKFullMatrix<double> a(n, n);
+      dealii::Vector<double>           b(n), lambda(n);
+      for (unsigned int i = 0; i < n; ++i)
         {
-          Eigen::MatrixXd a(active.size(), active.size());
-          Eigen::VectorXd b(active.size());
-          for (unsigned int i = 0; i < active.size(); ++i)
-            {
-              b(i) = missing(active[i]);
-              for (unsigned int j = 0; j < active.size(); ++j)
-                a(i, j) = A(active[i], active[j]);
-            }
-          const Eigen::VectorXd x = a.completeOrthogonalDecomposition().solve(b);
-          for (unsigned int i = 0; i < active.size(); ++i)
-            lambda(active[i]) = x(i);
+          const bool active = set & (1u << i);
+          b(i)              = active ? missing(i) : 0.;
+          for (unsigned int j = 0; j < n; ++j)
+            a(i, j) = (active && set & (1u << j)) ? A(i, j) : (i == j && !active);
         }
-      if (lambda.minCoeff() < -1e-10 || (A * lambda - missing).minCoeff() < -1e-10)
+      // More contacts than unknowns: the smallest of many solutions.
+      a.compute_inverse_svd(1e-12);
+      a.vmult(lambda, b);
+      bool solves = true;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          double change = 0;
+          for (unsigned int j = 0; j < n; ++j)
+            change += A(i, j) * lambda(j);
+          solves = solves && lambda(i) >= -1e-10 && change - missing(i) >= -1e-10;
+        }
+      if (!solves)
         continue;
-      const Eigen::VectorXd solution = v + w.asDiagonal() * J.transpose() * lambda;
+      std::vector<dealii::Tensor<1, 2>> result(problem.unknowns.size());
       for (unsigned int i = 0; i < m; ++i)
-        result[i / 2][i % 2] = solution(i);
+        {
+          result[i / 2][i % 2] = v(i);
+          for (unsigned int c = 0; c < n; ++c)
+            result[i / 2][i % 2] += w(i) * J(c, i) * lambda(c);
+        }
       return result;
     }
   AssertThrow(false, dealii::ExcInternalError());
-  return result;
+  return {};
 }
 
 ContactOptions

@@ -219,16 +219,18 @@ ContactSystem<dim>::sum_up(const std::vector<RigidUnknown<dim>> &rigid)
             unknown_impulse[row.entries[e].unknown] += weight * result.impulse[c];
             unknown_correction[row.entries[e].unknown] += weight * result.correction[c];
           }
-      if (row.rigid_body[c] >= 0)
-        {
-          auto        &sum = rigid_sums[row.rigid_body[c]];
-          const Vector arm =
-            list[c].place + list[c].gap * list[c].normal - rigid[row.rigid_body[c]].centre;
-          sum.impulse -= result.impulse[c];
-          sum.moment -= Delassus<dim>::torque(arm, result.impulse[c]);
-          sum.correction -= result.correction[c];
-          sum.correction_moment -= Delassus<dim>::torque(arm, result.correction[c]);
-        }
+      for (unsigned int side = 0; side < 2; ++side)
+        if (const int b = row.rigid_body[c][side]; b >= 0)
+          {
+            auto        &sum     = rigid_sums[b];
+            const Vector arm     = list[c].place + list[c].gap * list[c].normal - rigid[b].centre,
+                         impulse = (side == 0 ? 1 : -1) * result.impulse[c],
+                         correction = (side == 0 ? 1 : -1) * result.correction[c];
+            sum.impulse += impulse;
+            sum.moment += Delassus<dim>::torque(arm, impulse);
+            sum.correction += correction;
+            sum.correction_moment += Delassus<dim>::torque(arm, correction);
+          }
     }
   if (!rigid.empty())
     MPI_Allreduce(MPI_IN_PLACE,

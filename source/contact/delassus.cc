@@ -41,12 +41,15 @@ Delassus<dim>::torque(const Vector &arm, const Vector &impulse)
 
 template <int dim>
 void
-Delassus<dim>::apply_rigid(const Row &row, const Vector &impulse, Velocities<dim> &v) const
+Delassus<dim>::apply_rigid(const Row         &row,
+                           const unsigned int side,
+                           const Vector      &impulse,
+                           Velocities<dim>   &v) const
 {
-  const int b = row.rigid_body;
+  const int b = row.rigid_body[side];
   for (int d = 0; d < dim; ++d)
-    v.rigid[b][d] -= rigid_inverse_mass[b][d] * impulse[d];
-  v.spin[b] -= rigid_inverse_inertia[b] * torque(row.arm, impulse);
+    v.rigid[b][d] += sign(side) * rigid_inverse_mass[b][d] * impulse[d];
+  v.spin[b] += sign(side) * (rigid_inverse_inertia[b] * torque(row.arm[side], impulse));
 }
 
 template <int dim>
@@ -62,14 +65,15 @@ Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split)
       for (int d = 0; d < dim; ++d)
         result[d] += factor * inverse_mass[i][d] * impulse[d];
     }
-  if (row.rigid_body >= 0)
-    {
-      const int    b = row.rigid_body;
-      const double n = (split ? 1 : rigid_multiplicity[b]);
-      for (int d = 0; d < dim; ++d)
-        result[d] += rigid_inverse_mass[b][d] / n * impulse[d];
-      result += cross(rigid_inverse_inertia[b] * torque(row.arm, impulse), row.arm) / n;
-    }
+  for (unsigned int side = 0; side < 2; ++side)
+    if (const int b = row.rigid_body[side]; b >= 0)
+      {
+        const Vector &arm = row.arm[side];
+        const double  n   = (split ? 1 : rigid_multiplicity[b]);
+        for (int d = 0; d < dim; ++d)
+          result[d] += rigid_inverse_mass[b][d] / n * impulse[d];
+        result += cross(rigid_inverse_inertia[b] * torque(arm, impulse), arm) / n;
+      }
   return result;
 }
 
@@ -106,8 +110,9 @@ Delassus<dim>::prepare(Row &row) const
   double largest = 0;
   for (std::size_t e = row.begin; e < row.end; ++e)
     largest += entries[e].weight * entries[e].weight * inverse_mass[entries[e].unknown].norm();
-  if (row.rigid_body >= 0)
-    largest += rigid_inverse_mass[row.rigid_body].norm();
+  for (const int b : row.rigid_body)
+    if (b >= 0)
+      largest += rigid_inverse_mass[b].norm();
   row.fixed = !(row.normal_inverse_mass > 1e-10 * largest);
 }
 
@@ -116,9 +121,10 @@ void
 Delassus<dim>::share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid)
 {
   buffer.assign(rigid.size(), 0.);
-  for (const int b : rows.rigid_body)
-    if (b >= 0)
-      buffer[b] = 1;
+  for (const auto &sides : rows.rigid_body)
+    for (const int b : sides)
+      if (b >= 0)
+        buffer[b] = 1;
   if (!rigid.empty())
     MPI_Allreduce(MPI_IN_PLACE, buffer.data(), buffer.size(), MPI_DOUBLE, MPI_SUM, communicator);
   rigid_inverse_mass.resize(rigid.size());
@@ -171,9 +177,10 @@ Delassus<dim>::reinit(const std::vector<Contact<dim>>      &contacts,
       row.rigid_body = rows.rigid_body[c];
       row.normal     = contacts[c].normal;
       row.friction   = contacts[c].friction;
-      if (row.rigid_body >= 0)
-        row.arm =
-          contacts[c].place + contacts[c].gap * contacts[c].normal - rigid[row.rigid_body].centre;
+      for (unsigned int side = 0; side < 2; ++side)
+        if (const int b = row.rigid_body[side]; b >= 0)
+          row.arm[side] =
+            contacts[c].place + contacts[c].gap * contacts[c].normal - rigid[b].centre;
       prepare(row);
     }
 }

@@ -51,7 +51,7 @@ RowBuilder<dim>::add_facet_side(const Contact<dim> &contact, const Surface<dim> 
           add(number, contact.weights[k]);
         }
   list.begin.push_back(list.entries.size());
-  list.rigid_body.push_back(rigid);
+  list.rigid_body.push_back({{-1, rigid}});
 }
 
 template class RowBuilder<2>;

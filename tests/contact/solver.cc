@@ -67,7 +67,7 @@ struct Problem
               }
             rows.begin.push_back(rows.entries.size());
             if (side == 1)
-              rows.rigid_body.push_back(on_body ? 0 : -1);
+              rows.rigid_body.push_back({{-1, on_body ? 0 : -1}});
           }
         Contact<dim> contact{};
         contact.set   = 0;

@@ -26,7 +26,7 @@ struct Velocities
  *
  * A rigid body is struck at the point, not at its surface below: so normal and
  * friction impulses have one line of action for both sides, and angular
- * momentum is conserved to round-off.
+ * momentum is conserved to round-off. Either side may be a rigid body.
  */
 template <int dim>
 class Delassus
@@ -38,10 +38,11 @@ public:
   struct Row
   {
     std::size_t begin, end;
-    int         rigid_body;
-    Vector      normal;
-    /// From the rigid body's centre to the point [m].
-    Vector arm;
+    /// Of each side, or -1.
+    std::array<int, 2> rigid_body;
+    Vector             normal;
+    /// From the centre of each side's rigid body to the point [m].
+    std::array<Vector, 2> arm;
     /// Change of u by a unit normal impulse [1/kg], its normal part, and a bound of the tangential
     /// block.
     Vector normal_response;
@@ -70,8 +71,9 @@ public:
     Vector u;
     for (std::size_t e = row.begin; e < row.end; ++e)
       u += entries[e].weight * v.nodes[entries[e].unknown];
-    if (row.rigid_body >= 0)
-      u -= v.rigid[row.rigid_body] + cross(v.spin[row.rigid_body], row.arm);
+    for (unsigned int side = 0; side < 2; ++side)
+      if (const int b = row.rigid_body[side]; b >= 0)
+        u += sign(side) * (v.rigid[b] + cross(v.spin[b], row.arm[side]));
     return u;
   }
 
@@ -84,8 +86,9 @@ public:
         for (int d = 0; d < dim; ++d)
           v.nodes[i][d] += entries[e].weight * inverse_mass[i][d] * impulse[d];
       }
-    if (row.rigid_body >= 0)
-      apply_rigid(row, impulse, v);
+    for (unsigned int side = 0; side < 2; ++side)
+      if (row.rigid_body[side] >= 0)
+        apply_rigid(row, side, impulse, v);
   }
 
   /// Collective. Shared velocities change by what all ranks have done to them since `before`;
@@ -102,7 +105,12 @@ public:
   static dealii::Tensor<1, 3> torque(const Vector &arm, const Vector &impulse);
 
 private:
-  void apply_rigid(const Row &row, const Vector &impulse, Velocities<dim> &v) const;
+  /// An impulse acts on the point, and the opposite on the facet.
+  static constexpr double sign(const unsigned int side) { return side == 0 ? 1. : -1.; }
+  void                    apply_rigid(const Row         &row,
+                                      const unsigned int side,
+                                      const Vector      &impulse,
+                                      Velocities<dim>   &v) const;
   void share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid);
   void prepare(Row &row) const;
   /// Diagonal block times an impulse, with the split masses or the true ones.

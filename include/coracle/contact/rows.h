@@ -4,6 +4,7 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,7 +48,8 @@ struct RigidUnknown
 /**
  * Sides of the contacts as rows: velocity of a side = sum of weight *
  * velocity[unknown], or the motion of a rigid body at the point. Side 0 is the
- * point, side 1 the facet.
+ * point (a material point, or a surface node of a structure), side 1 the facet.
+ * An unknown may be on either side of different contacts.
  */
 struct Rows
 {
@@ -59,8 +61,8 @@ struct Rows
   /// Entries of side s of contact c: begin[2 * c + s] up to begin[2 * c + s + 1].
   std::vector<std::size_t> begin = {0};
   std::vector<Entry>       entries;
-  /// Rigid body of the facet's side, or -1.
-  std::vector<int> rigid_body;
+  /// Rigid body of each side, or -1.
+  std::vector<std::array<int, 2>> rigid_body;
 
   std::size_t n_contacts() const { return rigid_body.size(); }
 

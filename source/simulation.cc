@@ -151,7 +151,10 @@ private:
     for (const auto &body : coupling.structure.rigids)
       add("body",
           "'" + body.name() + "', rigid: " + std::to_string(body.mesh().n_global_elements()) +
-            " elements, mass " + with_unit(body.mass(), "kg"));
+            (body.mesh().n_sheets() > 0 ? " facets of " + std::to_string(body.mesh().n_sheets()) +
+                                            (body.mesh().n_sheets() > 1 ? " sheets" : " sheet")
+                                        : " elements") +
+            ", mass " + with_unit(body.mass(), "kg"));
     const double dt = coupling.choose_time_step();
     add("first step", with_unit(dt, "s"));
     add("estimated steps", std::to_string(static_cast<std::uint64_t>(std::ceil(end_time / dt))));

@@ -140,6 +140,9 @@ LocalSearch<dim>::find(const PointSet<dim>       &points,
         else
           {
             minima_of_body(points.point(point), begin, next);
+            // Near a sheet only where another joins it: the side is that other one's affair.
+            if (minima.empty())
+              forget(point, b);
             contacts_of_body(points, set, motion, contacts);
           }
       }

@@ -171,9 +171,12 @@ SurfaceTopology<dim>::pseudonormal(const unsigned int f, const NearestPoint<dim>
       if (nearest.region == Region::interior)
         return {unit(turned(position(facet.nodes[1]) - position(facet.nodes[0]))), false};
       const unsigned int node = facet.nodes[nearest.feature];
-      for (unsigned int i = begin[node]; i < begin[node + 1]; ++i, ++n_facets)
+      for (unsigned int i = begin[node]; i < begin[node + 1]; ++i)
         {
           const auto &other = surface->facets[facets[i]];
+          if (other.body != facet.body)
+            continue;
+          ++n_facets;
           sum += unit(turned(position(other.nodes[1]) - position(other.nodes[0])));
         }
       return {unit(sum), n_facets < 2};
@@ -185,6 +188,8 @@ SurfaceTopology<dim>::pseudonormal(const unsigned int f, const NearestPoint<dim>
                                       const double       s) {
         const auto        &other = surface->facets[g];
         const unsigned int n     = n_corners(other);
+        if (other.body != facet.body)
+          return;
         const auto along = position(other.nodes[(corner + 1) % n]) - position(other.nodes[corner]);
         sum += unit(dealii::cross_product_3d(along, inward(*surface, other, corner, s)));
         ++n_facets;
@@ -210,7 +215,9 @@ SurfaceTopology<dim>::pseudonormal(const unsigned int f, const NearestPoint<dim>
           long               open = 0;
           for (unsigned int i = begin[node]; i < begin[node + 1]; ++i)
             {
-              const auto        &other = surface->facets[facets[i]];
+              const auto &other = surface->facets[facets[i]];
+              if (other.body != facet.body)
+                continue;
               const unsigned int n = n_corners(other), k = corner_of(other, node);
               const unsigned int next     = other.nodes[(k + 1) % n],
                                  previous = other.nodes[(k + n - 1) % n];

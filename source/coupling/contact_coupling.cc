@@ -32,15 +32,18 @@ ContactCoupling<dim>::make_point_sets(MaterialPointSystem<dim> &points, const bo
   unsigned int s = 0;
   for (auto &body : points.bodies)
     {
-      auto                      &set = sets[s];
-      const MaterialPoints<dim> &p   = body.points;
-      set.n_points                   = p.n_rows();
-      set.mass                       = p.column(Layout<dim>::mass);
+      auto                &set = sets[s];
+      MaterialPoints<dim> &p   = body.points;
+      set.n_points             = p.n_rows();
+      set.mass                 = p.column(Layout<dim>::mass);
       for (int d = 0; d < dim; ++d)
         {
           set.position[d] = p.column(Layout<dim>::position + d);
           set.velocity[d] = p.column(Layout<dim>::velocity + d);
         }
+      set.side.clear();
+      for (int sheet = 0; sheet < p.layout().n_sheets; ++sheet)
+        set.side.push_back(p.column(p.layout().side + sheet));
       if (renumbered)
         {
           ids[s].assign(p.column(Layout<dim>::id), p.column(Layout<dim>::id) + p.n_rows());

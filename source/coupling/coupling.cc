@@ -57,7 +57,7 @@ Coupling<dim>::declare(Declaration &root)
     "material points",
     {"material points", "solid", "rigid"},
     "material points: fluid, or solid that deforms without limit; solid: finite elements; "
-    "rigid: a mesh that keeps its shape.");
+    "rigid: a mesh, or thin sheets, that keep their shape.");
   MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
   SolidBody<dim>::declare(body.when("Kind", "solid"));
   RigidBody<dim>::declare(body.when("Kind", "rigid"));
@@ -70,7 +70,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
   , structure(root, materials, options.gravity, comm)
-  , points(root, materials, options.gravity, 0, comm)
+  , points(root, materials, options.gravity, structure.n_sheets(), comm)
   , contacts(contact::ContactOptions(root.section("Contact")), comm)
   , comm(comm)
 {

@@ -40,19 +40,38 @@ StructureSystem<dim>::for_each_surface(const Action &action)
 
 template <int dim>
 void
+StructureSystem<dim>::describe_surfaces(const StructuralBody<dim> &body,
+                                        const unsigned int         index,
+                                        const int                  rigid_body)
+{
+  contact::SurfaceBody description;
+  description.thickness       = body.thickness();
+  description.friction        = body.friction();
+  description.rigid_body      = rigid_body;
+  const unsigned int n_sheets = body.mesh().n_sheets();
+  for (unsigned int i = 0; i < std::max(1u, n_sheets); ++i)
+    {
+      if (n_sheets > 0)
+        {
+          description.kind  = contact::SurfaceKind::sheet;
+          description.sheet = sheets++;
+        }
+      surface.bodies.push_back(description);
+      body_of_surface.push_back(index);
+    }
+}
+
+template <int dim>
+void
 StructureSystem<dim>::make_surface()
 {
-  surface = contact::Surface<dim>();
-  first_node.clear();
+  surface                 = contact::Surface<dim>();
   int           n_rigid   = 0;
   std::uint64_t first_key = 0, first_facet_key = 0;
   for_each_surface([&](auto &body, const unsigned int index) {
-    contact::SurfaceBody description;
-    description.thickness = body.thickness();
-    description.friction  = body.friction();
-    if constexpr (std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>)
-      description.rigid_body = n_rigid++;
-    surface.bodies.push_back(description);
+    constexpr bool     is_rigid      = std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>;
+    const unsigned int first_surface = surface.bodies.size();
+    describe_surfaces(body, index, is_rigid ? n_rigid++ : -1);
     received.emplace_back();
 
     first_node.push_back(surface.nodes.size());
@@ -70,7 +89,7 @@ StructureSystem<dim>::make_surface()
         contact::Facet<dim> f;
         for (unsigned int v = 0; v < f.nodes.size(); ++v)
           f.nodes[v] = place.at(facet.nodes[v]);
-        f.body      = index;
+        f.body      = first_surface + facet.sheet;
         f.key       = first_facet_key + facet.key;
         largest_key = std::max(largest_key, facet.key);
         surface.facets.push_back(f);
@@ -170,7 +189,7 @@ StructureSystem<dim>::apply_contact(
     if constexpr (std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>)
       {
         // The same on all ranks, so that one of them tells the body.
-        const auto &sums = rigid[surface.bodies[index].rigid_body];
+        const auto &sums = rigid[index - solids.size()];
         if (mpi::rank(comm) == 0)
           {
             received[index] += sums.impulse;

@@ -218,10 +218,10 @@ CouplingOutput<dim>::write_structure(const StructuralBody<dim>                 &
 {
   using Node = NodeColumns<dim>;
   MeshView view;
-  view.shape    = cell_shape<dim>;
+  view.shape    = body.mesh().cell_dimension() == dim ? cell_shape<dim> : cell_shape<dim - 1>;
   view.position = columns_field("position", "m", body.nodes(), Node::position, dim);
-  view.n_cells  = body.mesh().n_elements();
-  view.cells    = view.n_cells > 0 ? body.mesh().elements[0].data() : nullptr;
+  view.n_cells  = body.mesh().n_cells();
+  view.cells    = body.mesh().cells();
   std::vector<dealii::Tensor<1, dim>> displacement(body.mesh().n_nodes());
   for (unsigned int node = 0; node < displacement.size(); ++node)
     displacement[node] = body.displacement(node);

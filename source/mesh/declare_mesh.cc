@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/mesh/mesh_generation.h>
+#include <coracle/mesh/sheet_generation.h>
 
 namespace coracle
 {
@@ -81,15 +82,25 @@ declare_polygon_and_file(Declaration &section)
 } // namespace
 
 void
-declare_mesh(Declaration &section)
+declare_mesh(Declaration &section, const bool with_sheets)
 {
+  std::vector<std::string> types = {
+    "box", "ball", "cylinder", "plate with hole", "wedge", "polygon", "file"};
+  if (with_sheets)
+    types.insert(types.end(), sheet_types.begin(), sheet_types.end());
   section.choice("Type",
                  "box",
-                 {"box", "ball", "cylinder", "plate with hole", "wedge", "polygon", "file"},
-                 "shape that is meshed, or `file`; polygons and wedges are extruded in 3-D");
+                 types,
+                 std::string("shape that is meshed, or `file`; polygons and wedges are extruded in "
+                             "3-D") +
+                   (with_sheets ? "; a polyline (extruded in 3-D) and a surface file are thin "
+                                  "sheets without volume, with particles on both sides"
+                                : ""));
   declare_simple_shapes(section);
   declare_plate_and_wedge(section);
   declare_polygon_and_file(section);
+  if (with_sheets)
+    declare_sheets(section);
   section.integer("Refinements", 0, "every element is halved this many times", 0, 10);
   section.list("Refined region",
                "",

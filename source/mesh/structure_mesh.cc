@@ -124,8 +124,8 @@ StructureMesh<dim>::number_nodes()
   dealii::IndexSet ghosts = with_parents;
   ghosts.subtract_set(owned);
 
-  exchange            = ColumnExchange(owned, ghosts, triangulation.get_communicator());
-  const auto &indices = *exchange.indices();
+  this->exchange      = ColumnExchange(owned, ghosts, triangulation.get_communicator());
+  const auto &indices = *this->exchange.indices();
   hanging_nodes.clear();
   for (const auto node : needed)
     if (constraints.is_constrained(node))
@@ -142,13 +142,13 @@ template <int dim>
 void
 StructureMesh<dim>::number_elements()
 {
-  const auto &indices = *exchange.indices();
+  const auto &indices = *this->exchange.indices();
   const auto  faces   = outward_faces<dim>();
   // Parents that are corners of no element here get their positions from their owners.
   Columns positions(dim);
-  positions.resize(n_nodes());
+  positions.resize(this->n_nodes());
   elements.clear();
-  facets.clear();
+  this->facets.clear();
   active_cell_index.clear();
 
   std::vector<dealii::types::global_dof_index> cell_nodes(nodes_per_element);
@@ -173,15 +173,15 @@ StructureMesh<dim>::number_elements()
                                        facet_key(cell, f)};
               for (unsigned int v = 0; v < facet.n_nodes; ++v)
                 facet.nodes[v] = element[faces[f][v]];
-              facets.push_back(facet);
+              this->facets.push_back(facet);
             }
       }
 
-  exchange.update_ghosts(positions, 0, dim);
-  nodes.resize(n_nodes());
-  for (unsigned int n = 0; n < n_nodes(); ++n)
+  this->exchange.update_ghosts(positions, 0, dim);
+  this->nodes.resize(this->n_nodes());
+  for (unsigned int n = 0; n < this->n_nodes(); ++n)
     for (int d = 0; d < dim; ++d)
-      nodes[n][d] = positions[d][n];
+      this->nodes[n][d] = positions[d][n];
 }
 
 template class StructureMesh<2>;

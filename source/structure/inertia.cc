@@ -18,35 +18,27 @@ VolumeIntegrals<dim>::inertia() const
   return result - second_moment;
 }
 
+namespace
+{
+/// To volume, first moments, second moments about the origin.
+template <int dim>
+void
+add_point(const dealii::Point<dim> &x, const double dv, std::vector<double> &sums)
+{
+  sums[0] += dv;
+  for (int i = 0; i < dim; ++i)
+    {
+      sums[1 + i] += x[i] * dv;
+      for (int j = 0; j < dim; ++j)
+        sums[1 + dim + i * dim + j] += x[i] * x[j] * dv;
+    }
+}
+
 template <int dim>
 VolumeIntegrals<dim>
-volume_integrals(const StructureMesh<dim> &mesh)
+total(std::vector<double> &sums, MPI_Comm comm)
 {
-  // x_i x_j det(dx/dxi) is of degree 4 in each coordinate.
-  dealii::FEValues<dim> values(mesh.fe,
-                               dealii::QGauss<dim>(3),
-                               dealii::update_quadrature_points | dealii::update_JxW_values);
-  // Volume, first moments, second moments about the origin.
-  std::vector<double> sums(1 + dim + dim * dim);
-  for (const auto &cell : mesh.dof_handler.active_cell_iterators())
-    if (cell->is_locally_owned())
-      {
-        values.reinit(cell);
-        for (const unsigned int q : values.quadrature_point_indices())
-          {
-            const dealii::Point<dim> &x  = values.quadrature_point(q);
-            const double              dv = values.JxW(q);
-            sums[0] += dv;
-            for (int i = 0; i < dim; ++i)
-              {
-                sums[1 + i] += x[i] * dv;
-                for (int j = 0; j < dim; ++j)
-                  sums[1 + dim + i * dim + j] += x[i] * x[j] * dv;
-              }
-          }
-      }
-  dealii::Utilities::MPI::sum(sums, mesh.communicator(), sums);
-
+  dealii::Utilities::MPI::sum(sums, comm, sums);
   VolumeIntegrals<dim> result;
   result.volume = sums[0];
   for (int i = 0; i < dim; ++i)
@@ -57,9 +49,62 @@ volume_integrals(const StructureMesh<dim> &mesh)
         sums[1 + dim + i * dim + j] - sums[0] * result.centre[i] * result.centre[j];
   return result;
 }
+} // namespace
+
+template <int dim>
+VolumeIntegrals<dim>
+volume_integrals(const StructureMesh<dim> &mesh)
+{
+  // x_i x_j det(dx/dxi) is of degree 4 in each coordinate.
+  dealii::FEValues<dim> values(mesh.fe,
+                               dealii::QGauss<dim>(3),
+                               dealii::update_quadrature_points | dealii::update_JxW_values);
+  std::vector<double>   sums(1 + dim + dim * dim);
+  for (const auto &cell : mesh.dof_handler.active_cell_iterators())
+    if (cell->is_locally_owned())
+      {
+        values.reinit(cell);
+        for (const unsigned int q : values.quadrature_point_indices())
+          add_point(values.quadrature_point(q), values.JxW(q), sums);
+      }
+  return total<dim>(sums, mesh.communicator());
+}
+
+template <int dim>
+VolumeIntegrals<dim>
+sheet_integrals(const BodyMesh<dim> &mesh)
+{
+  const dealii::QGauss<dim - 1> quadrature(3);
+  std::vector<double>           sums(1 + dim + dim * dim);
+  for (const auto &facet : mesh.facets)
+    for (unsigned int q = 0; q < quadrature.size(); ++q)
+      {
+        const auto             p = quadrature.point(q);
+        const auto             x = [&](const int k) { return mesh.nodes[facet.nodes[k]]; };
+        dealii::Tensor<1, dim> place;
+        double                 area;
+        if constexpr (dim == 2)
+          {
+            place = (1 - p[0]) * x(0) + p[0] * x(1);
+            area  = x(0).distance(x(1));
+          }
+        else
+          {
+            const auto bottom = (1 - p[0]) * x(0) + p[0] * x(1),
+                       top    = (1 - p[0]) * x(3) + p[0] * x(2);
+            place             = (1 - p[1]) * bottom + p[1] * top;
+            const auto t_xi   = (1 - p[1]) * (x(1) - x(0)) + p[1] * (x(2) - x(3));
+            area              = dealii::cross_product_3d(t_xi, top - bottom).norm();
+          }
+        add_point(dealii::Point<dim>(place), area * quadrature.weight(q), sums);
+      }
+  return total<dim>(sums, mesh.communicator());
+}
 
 template struct VolumeIntegrals<2>;
 template struct VolumeIntegrals<3>;
 template VolumeIntegrals<2> volume_integrals(const StructureMesh<2> &);
 template VolumeIntegrals<3> volume_integrals(const StructureMesh<3> &);
+template VolumeIntegrals<2> sheet_integrals(const BodyMesh<2> &);
+template VolumeIntegrals<3> sheet_integrals(const BodyMesh<3> &);
 } // namespace coracle

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
-#include <coracle/structure/inertia.h>
+#include <coracle/mesh/sheet_mesh.h>
+#include <coracle/mesh/structure_mesh.h>
 #include <coracle/structure/rigid_body.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace coracle
@@ -22,10 +24,31 @@ in_space(const dealii::Tensor<1, dim> &v)
 } // namespace
 
 template <int dim>
-RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, MPI_Comm comm)
-  : StructuralBody<dim>(body, comm), gravity(gravity)
+typename RigidBody<dim>::Shape
+RigidBody<dim>::read_shape(const Parameters &section, MPI_Comm comm)
 {
-  read_mass(body);
+  const std::string type = section.choice("Type");
+  if (std::find(sheet_types.begin(), sheet_types.end(), type) != sheet_types.end())
+    {
+      auto       mesh      = std::make_unique<const SheetMesh<dim>>(section, comm);
+      const auto integrals = sheet_integrals(*mesh);
+      return {std::move(mesh), integrals};
+    }
+  auto       mesh      = std::make_unique<const StructureMesh<dim>>(section, comm);
+  const auto integrals = volume_integrals(*mesh);
+  return {std::move(mesh), integrals};
+}
+
+template <int dim>
+RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, MPI_Comm comm)
+  : RigidBody(body, gravity, read_shape(body.section("Mesh"), comm))
+{}
+
+template <int dim>
+RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, Shape &&shape)
+  : StructuralBody<dim>(body, std::move(shape.mesh)), gravity(gravity)
+{
+  read_mass(body, shape.integrals);
   read_motion(body);
   read_initial_motion(body);
   set_node_velocities();
@@ -33,16 +56,18 @@ RigidBody<dim>::RigidBody(const Parameters &body, const Vector &gravity, MPI_Com
 
 template <int dim>
 void
-RigidBody<dim>::read_mass(const Parameters &body)
+RigidBody<dim>::read_mass(const Parameters &body, const VolumeIntegrals<dim> &integrals)
 {
-  const VolumeIntegrals<dim> integrals = volume_integrals(this->mesh());
-  const double               mass = body.quantity("Mass"), density = body.quantity("Density");
+  const double mass = body.quantity("Mass"), density = body.quantity("Density");
   if ((mass > 0) == (density > 0))
     throw body.error("Mass",
                      "mass of a rigid body is not clear",
                      mass > 0 ? "both Mass and Density" : "neither Mass nor Density",
                      "set one of them");
-  body_mass        = mass > 0 ? mass : density * integrals.volume;
+  const double volume = integrals.volume * (this->mesh().n_sheets() > 0 ? this->thickness() : 1.);
+  body_mass           = mass > 0 ? mass : density * volume;
+  if (body_mass == 0)
+    throw body.error("Density", "body without mass", "a sheet of thickness zero", "give its Mass");
   inertia          = (body_mass / integrals.volume) * integrals.inertia();
   reference_centre = body_centre = integrals.centre;
 }

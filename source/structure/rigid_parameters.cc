@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/mesh/mesh_generation.h>
 #include <coracle/structure/rigid_body.h>
 #include <coracle/structure/selection.h>
 
@@ -10,6 +11,8 @@ template <int dim>
 void
 RigidBody<dim>::declare(Declaration &section)
 {
+  declare_mesh(section.section("Mesh", "Shape of the body: elements, or a sheet without volume"),
+               true);
   RigidBody::declare_surface(section);
   section.quantity("Mass",
                    "0",
@@ -18,7 +21,12 @@ RigidBody<dim>::declare(Declaration &section)
                    "of the body, of one metre of depth in 2-D; spread evenly over the mesh. Give "
                    "this or Density",
                    0.);
-  section.quantity("Density", "0", "kg/m^3", "rho", "of the body; give this or Mass", 0.);
+  section.quantity("Density",
+                   "0",
+                   "kg/m^3",
+                   "rho",
+                   "of the body, or of a sheet with its Thickness; give this or Mass",
+                   0.);
   section.text("Free directions",
                "",
                "in which the body moves by its inertia: some of x, y, z, rx, ry, rz (in 2-D x, y, "

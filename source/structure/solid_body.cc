@@ -11,6 +11,7 @@ template <int dim>
 void
 SolidBody<dim>::declare(Declaration &section)
 {
+  StructureMesh<dim>::declare(section.section("Mesh", "Elements and nodes of the body"));
   SolidBody::declare_surface(section);
   section.text("Material", "", "name of a subsection of Materials");
   section.choice(
@@ -41,13 +42,14 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
                           const MaterialLibrary &materials,
                           const Vector          &gravity,
                           MPI_Comm               comm)
-  : StructuralBody<dim>(body, comm)
-  , elements(*this->body_mesh,
+  : StructuralBody<dim>(body,
+                        std::make_unique<const StructureMesh<dim>>(body.section("Mesh"), comm))
+  , elements(mesh(),
              materials.get(body.text("Material"), body),
              body.choice("Integration") == "full" ? Integration::full : Integration::one_point,
              body.choice("Integration") == "full" ? 0. : body.quantity("Hourglass coefficient"))
-  , boundary_conditions(body, *this->body_mesh)
-  , loads(body, *this->body_mesh)
+  , boundary_conditions(body, mesh())
+  , loads(body, mesh())
   , gravity(gravity)
   , damping(body.section("Damping").quantity("Coefficient"))
   , damping_start(body.section("Damping").quantity("Start"))
@@ -55,7 +57,7 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
 {
   set_mass();
   const Vector initial_velocity = body.template point<dim>("Initial velocity");
-  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+  for (unsigned int n = 0; n < mesh().n_nodes(); ++n)
     this->set_vector(Node::velocity, n, initial_velocity);
   find_contact_nodes();
   // No displacement yet: finds bad elements and the first stable step, on all ranks alike.
@@ -67,17 +69,17 @@ void
 SolidBody<dim>::set_mass()
 {
   Columns &nodes = this->node_columns;
-  elements.add_mass(nodes[Node::mass], this->mesh());
+  elements.add_mass(nodes[Node::mass], mesh());
   condense(Node::mass, 1);
-  this->mesh().exchange.sum_to_owners(nodes, Node::mass, 1);
-  this->mesh().exchange.update_ghosts(nodes, Node::mass, 1);
-  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+  mesh().exchange.sum_to_owners(nodes, Node::mass, 1);
+  mesh().exchange.update_ghosts(nodes, Node::mass, 1);
+  for (unsigned int n = 0; n < mesh().n_nodes(); ++n)
     for (int d = 0; d < dim; ++d)
       nodes[Node::inverse_mass + d][n] = nodes[Node::mass][n] > 0 ? 1. / nodes[Node::mass][n] : 0.;
   boundary_conditions.constrain(nodes);
-  this->mesh().exchange.update_ghosts(nodes, Node::inverse_mass, dim);
+  mesh().exchange.update_ghosts(nodes, Node::inverse_mass, dim);
   // What contact feels at a hanging node: its parents, moved together by their weights.
-  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+  for (const HangingNode &hanging : mesh().hanging_nodes)
     for (int d = 0; d < dim; ++d)
       {
         double &inverse = nodes[Node::inverse_mass + d][hanging.node] = 0;
@@ -95,8 +97,8 @@ SolidBody<dim>::find_contact_nodes()
   for (const unsigned int n : this->surface_nodes())
     nodes[Node::impulse][n] = 1;
   condense(Node::impulse, 1);
-  this->mesh().exchange.sum_to_owners(nodes, Node::impulse, 1);
-  for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+  mesh().exchange.sum_to_owners(nodes, Node::impulse, 1);
+  for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
     if (nodes[Node::impulse][n] > 0)
       {
         contact_nodes.push_back(n);
@@ -108,7 +110,7 @@ template <int dim>
 void
 SolidBody<dim>::condense(const unsigned int first, const unsigned int n_columns)
 {
-  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+  for (const HangingNode &hanging : mesh().hanging_nodes)
     for (unsigned int c = first; c < first + n_columns; ++c)
       {
         double *const column = this->node_columns[c];
@@ -122,8 +124,8 @@ template <int dim>
 void
 SolidBody<dim>::distribute(const unsigned int first)
 {
-  this->mesh().exchange.update_ghosts(this->node_columns, first, dim);
-  for (const HangingNode &hanging : this->mesh().hanging_nodes)
+  mesh().exchange.update_ghosts(this->node_columns, first, dim);
+  for (const HangingNode &hanging : mesh().hanging_nodes)
     for (unsigned int c = first; c < first + dim; ++c)
       {
         double *const column = this->node_columns[c];
@@ -143,12 +145,12 @@ SolidBody<dim>::assemble_forces(const double now)
     {
       double *const external = nodes[Node::external + d];
       std::fill_n(external, nodes.size(), 0.);
-      for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+      for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
         external[n] = nodes[Node::mass][n] * gravity[d];
     }
   loads.add_forces(nodes, time);
   condense(Node::internal, 2 * dim);
-  this->mesh().exchange.sum_to_owners(nodes, Node::internal, 2 * dim);
+  mesh().exchange.sum_to_owners(nodes, Node::internal, 2 * dim);
 }
 
 template <int dim>
@@ -173,7 +175,7 @@ void
 SolidBody<dim>::kick(const double duration, const double dt)
 {
   Columns            &nodes   = this->node_columns;
-  const unsigned int  n_owned = this->mesh().n_owned_nodes();
+  const unsigned int  n_owned = mesh().n_owned_nodes();
   const double        half    = 0.5 * damping_at(time) * duration;
   const double *const mass    = nodes[Node::mass];
 
@@ -222,7 +224,7 @@ SolidBody<dim>::apply_contact_impulses()
 {
   Columns &nodes = this->node_columns;
   condense(Node::impulse, dim);
-  this->mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
+  mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
   for (int d = 0; d < dim; ++d)
     for (const unsigned int n : contact_nodes)
       {
@@ -260,7 +262,7 @@ SolidBody<dim>::apply_corrections()
   // From here to `move` the column holds displacements.
   Columns &nodes = this->node_columns;
   condense(Node::correction, dim);
-  this->mesh().exchange.sum_to_owners(nodes, Node::correction, dim);
+  mesh().exchange.sum_to_owners(nodes, Node::correction, dim);
   for (int d = 0; d < dim; ++d)
     for (const unsigned int n : contact_nodes)
       nodes[Node::correction + d][n] *= nodes[Node::inverse_mass + d][n];
@@ -309,7 +311,7 @@ SolidBody<dim>::energies() const
   const Columns &nodes   = this->node_columns;
   double         kinetic = 0;
   for (int d = 0; d < dim; ++d)
-    for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+    for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
       kinetic +=
         0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] * nodes[Node::velocity + d][n];
   std::vector<double> sums = {kinetic,
@@ -318,7 +320,7 @@ SolidBody<dim>::energies() const
                               books.damping,
                               books.contact_work,
                               books.external_work};
-  dealii::Utilities::MPI::sum(sums, this->mesh().communicator(), sums);
+  dealii::Utilities::MPI::sum(sums, mesh().communicator(), sums);
   return {sums[0], sums[1] - sums[2], sums[2], sums[3], sums[4], sums[5]};
 }
 
@@ -328,7 +330,7 @@ SolidBody<dim>::summary() const
 {
   // mass, m x, m v, force, moment about the origin
   std::vector<double> sums(1 + 3 * dim + 3);
-  for (unsigned int n = 0; n < this->mesh().n_owned_nodes(); ++n)
+  for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
     {
       const double mass  = this->node_columns[Node::mass][n];
       const Vector force = this->contact_force(n);
@@ -343,7 +345,7 @@ SolidBody<dim>::summary() const
       for (int d = 0; d < 3; ++d)
         sums[1 + 3 * dim + d] += moment[d];
     }
-  dealii::Utilities::MPI::sum(sums, this->mesh().communicator(), sums);
+  dealii::Utilities::MPI::sum(sums, mesh().communicator(), sums);
 
   BodySummary<dim> result;
   result.mass = sums[0];

@@ -9,7 +9,6 @@ template <int dim>
 void
 StructuralBody<dim>::declare_surface(Declaration &section)
 {
-  StructureMesh<dim>::declare(section.section("Mesh", "Elements and nodes of the body"));
   section.quantity("Thickness",
                    "0",
                    "m",
@@ -21,9 +20,10 @@ StructuralBody<dim>::declare_surface(Declaration &section)
 }
 
 template <int dim>
-StructuralBody<dim>::StructuralBody(const Parameters &body, MPI_Comm comm)
+StructuralBody<dim>::StructuralBody(const Parameters                    &body,
+                                    std::unique_ptr<const BodyMesh<dim>> mesh_of_body)
   : body_name(body.name())
-  , body_mesh(std::make_unique<StructureMesh<dim>>(body.section("Mesh"), comm))
+  , body_mesh(std::move(mesh_of_body))
   , node_columns(NodeColumns<dim>::n_columns)
   , surface_thickness(body.quantity("Thickness"))
   , surface_friction(body.quantity("Friction"))

@@ -36,7 +36,8 @@ public:
                   const unsigned int        facet,
                   const NearestPoint<dim>  &nearest) const;
 
-  /// Unit normal; at edges and vertices the sum over the facets there, weighted by angle.
+  /// Unit normal; at edges and vertices the sum over the body's facets there, weighted by angle:
+  /// where sheets are joined (surfaces of their own, with nodes in common) each has its own sides.
   struct Pseudonormal
   {
     dealii::Tensor<1, dim> normal;

@@ -61,13 +61,16 @@ public:
     return n;
   }
 
-  /// Name of a body by its number among the surfaces.
+  /// Name of a body by its number among contact's surfaces.
   const std::string &body_name(const unsigned int surface_body) const
   {
-    return surface_body < solids.size()
-             ? std::next(solids.begin(), surface_body)->name()
-             : std::next(rigids.begin(), surface_body - solids.size())->name();
+    const unsigned int body = body_of_surface[surface_body];
+    return body < solids.size() ? std::next(solids.begin(), body)->name()
+                                : std::next(rigids.begin(), body - solids.size())->name();
   }
+
+  /// Surfaces with particles on both sides, of all bodies together; each has a column of sides.
+  unsigned int n_sheets() const { return sheets; }
 
   bool empty() const { return solids.empty() && rigids.empty(); }
 
@@ -76,13 +79,18 @@ public:
 
 private:
   void make_surface();
-  /// Calls action(body, first node of the body in the surface) for all bodies, solids first.
+  /// What contact knows of the body: one surface, or one for each of its sheets.
+  void describe_surfaces(const StructuralBody<dim> &body,
+                         const unsigned int         index,
+                         const int                  rigid_body);
+  /// Calls action(body, number of the body) for all bodies, solids first.
   template <typename Action>
   void for_each_surface(const Action &action);
 
   MPI_Comm                            comm;
   contact::Surface<dim>               surface;
-  std::vector<unsigned int>           first_node;
+  std::vector<unsigned int>           first_node, body_of_surface;
+  unsigned int                        sheets = 0;
   std::vector<dealii::Tensor<1, dim>> received;
 };
 } // namespace coracle

@@ -7,8 +7,9 @@
 
 namespace coracle
 {
-/// Entries of a body's section `Mesh`: the shape, or a file, and how it is placed.
-void declare_mesh(Declaration &section);
+/// Entries of a body's section `Mesh`: the shape, or a file, and how it is placed; with sheets also
+/// surfaces without volume (sheet_generation.h).
+void declare_mesh(Declaration &section, const bool with_sheets = false);
 
 /**
  * The coarse mesh that a section `Mesh` describes, in its own frame (unmoved,

@@ -6,30 +6,13 @@
 #include <deal.II/fe/fe_q.h>
 
 #include <coracle/base/parameters.h>
-#include <coracle/mesh/column_exchange.h>
+#include <coracle/mesh/body_mesh.h>
 
-#include <array>
-#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace coracle
 {
-/// A boundary face of an element on this rank.
-template <int dim>
-struct BoundaryFacet
-{
-  static constexpr unsigned int n_nodes = (dim == 2 ? 2 : 4);
-
-  /// Local node numbers. 2-D: the body lies to the left of 0 -> 1; 3-D: counter-clockwise from
-  /// outside.
-  std::array<unsigned int, n_nodes> nodes;
-  /// Local number of the element it belongs to.
-  unsigned int element;
-  unsigned int boundary_id;
-  /// Unique over ranks and independent of their number.
-  std::uint64_t key;
-};
-
 /// A node on an edge or face of a larger neighbour: it moves as the mean of its parents.
 struct HangingNode
 {
@@ -46,7 +29,7 @@ struct HangingNode
  * numbers are those of FE_Q(1). A rank may have no elements and no nodes.
  */
 template <int dim>
-class StructureMesh
+class StructureMesh : public BodyMesh<dim>
 {
 public:
   static constexpr unsigned int nodes_per_element = 1u << dim;
@@ -59,35 +42,26 @@ public:
   StructureMesh(const dealii::Triangulation<dim> &coarse,
                 MPI_Comm                          comm,
                 const unsigned int                n_refinements = 0);
-  StructureMesh(const StructureMesh &) = delete;
 
   unsigned int  n_elements() const { return elements.size(); }
-  unsigned int  n_owned_nodes() const { return exchange.n_owned(); }
-  unsigned int  n_nodes() const { return exchange.n_local(); }
-  std::uint64_t n_global_elements() const { return triangulation.n_global_active_cells(); }
-  std::uint64_t n_global_nodes() const { return dof_handler.n_dofs(); }
-  /// Global number of a local node, the same for any rank that has it.
-  std::uint64_t key(const unsigned int node) const
+  std::uint64_t n_global_elements() const override { return triangulation.n_global_active_cells(); }
+
+  unsigned int        n_sheets() const override { return 0; }
+  unsigned int        cell_dimension() const override { return dim; }
+  unsigned int        n_cells() const override { return elements.size(); }
+  const unsigned int *cells() const override
   {
-    return exchange.indices()->local_to_global(node);
+    return elements.empty() ? nullptr : elements.front().data();
   }
-  int      owner(const unsigned int node) const { return exchange.owner(node); }
-  MPI_Comm communicator() const { return triangulation.get_communicator(); }
 
   dealii::parallel::distributed::Triangulation<dim> triangulation;
   const dealii::FE_Q<dim>                           fe;
   dealii::DoFHandler<dim>                           dof_handler;
 
-  /// Layout of node columns, and their sums over ranks.
-  ColumnExchange exchange;
-  /// Reference positions of all local nodes [m].
-  std::vector<dealii::Point<dim>> nodes;
   /// Local nodes of each owned element in deal.II's order (first coordinate runs fastest).
   std::vector<std::array<unsigned int, nodes_per_element>> elements;
   /// Each element's number among the active cells, for cell data in output.
   std::vector<unsigned int> active_cell_index;
-  /// Boundary faces of owned elements.
-  std::vector<BoundaryFacet<dim>> facets;
   /// Of owned elements; none in a mesh without local refinement.
   std::vector<HangingNode> hanging_nodes;
 

@@ -8,7 +8,8 @@
 
 namespace coracle
 {
-/// Volume integrals of a mesh; of one metre of depth in 2-D, with what lies out of the plane zero.
+/// Volume integrals of a mesh, for a sheet of one metre of its thickness; of one metre of depth in
+/// 2-D, with what lies out of the plane zero.
 template <int dim>
 struct VolumeIntegrals
 {
@@ -26,4 +27,8 @@ struct VolumeIntegrals
 /// Exact for elements as they are, also warped ones. Collective.
 template <int dim>
 VolumeIntegrals<dim> volume_integrals(const StructureMesh<dim> &mesh);
+
+/// Over the facets of a sheet; exact for flat ones. Collective.
+template <int dim>
+VolumeIntegrals<dim> sheet_integrals(const BodyMesh<dim> &mesh);
 } // namespace coracle

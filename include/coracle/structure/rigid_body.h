@@ -3,6 +3,7 @@
 
 #include <deal.II/base/function.h>
 
+#include <coracle/structure/inertia.h>
 #include <coracle/structure/rigid_rotation.h>
 #include <coracle/structure/structural_body.h>
 
@@ -12,9 +13,10 @@
 namespace coracle
 {
 /**
- * A rigid body: the shape and inertia of a mesh, free in some directions and
- * moved by functions of time in the others. Its state is the same on all ranks;
- * its mesh and surface are distributed. The steps are those of SolidBody.
+ * A rigid body: the shape and inertia of a mesh or of a thin sheet, free in some
+ * directions and moved by functions of time in the others. Its state is the same
+ * on all ranks; its mesh and surface are distributed. The steps are those of
+ * SolidBody.
  */
 template <int dim>
 class RigidBody : public StructuralBody<dim>
@@ -81,7 +83,16 @@ private:
     Vector3 moment;
   };
 
-  void read_mass(const Parameters &body);
+  /// The mesh that the section `Mesh` describes, and its integrals.
+  struct Shape
+  {
+    std::unique_ptr<const BodyMesh<dim>> mesh;
+    VolumeIntegrals<dim>                 integrals;
+  };
+  static Shape read_shape(const Parameters &mesh, MPI_Comm comm);
+  RigidBody(const Parameters &body, const Vector &gravity, Shape &&shape);
+
+  void read_mass(const Parameters &body, const VolumeIntegrals<dim> &integrals);
   void read_motion(const Parameters &body);
   void read_initial_motion(const Parameters &body);
   void prescribe(const double dt);

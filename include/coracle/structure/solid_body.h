@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/material/library.h>
+#include <coracle/mesh/structure_mesh.h>
 #include <coracle/structure/boundary_conditions.h>
 #include <coracle/structure/elements.h>
 #include <coracle/structure/loads.h>
@@ -66,6 +67,11 @@ public:
   /// Collective sums.
   Energies         energies() const;
   BodySummary<dim> summary() const;
+
+  const StructureMesh<dim> &mesh() const
+  {
+    return static_cast<const StructureMesh<dim> &>(*this->body_mesh);
+  }
 
   unsigned int n_points_per_element() const { return elements.n_points(); }
   /// Mean over the points of an element of mesh().elements [Pa].

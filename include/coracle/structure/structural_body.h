@@ -2,7 +2,8 @@
 #pragma once
 
 #include <coracle/base/columns.h>
-#include <coracle/mesh/structure_mesh.h>
+#include <coracle/base/parameters.h>
+#include <coracle/mesh/body_mesh.h>
 #include <coracle/structure/body_state.h>
 #include <coracle/structure/node_columns.h>
 
@@ -23,12 +24,12 @@ class StructuralBody
 public:
   using Vector = dealii::Tensor<1, dim>;
 
-  const std::string        &name() const { return body_name; }
-  const StructureMesh<dim> &mesh() const { return *body_mesh; }
-  const Columns            &nodes() const { return node_columns; }
-  Columns                  &nodes() { return node_columns; }
+  const std::string   &name() const { return body_name; }
+  const BodyMesh<dim> &mesh() const { return *body_mesh; }
+  const Columns       &nodes() const { return node_columns; }
+  Columns             &nodes() { return node_columns; }
 
-  /// Boundary facets of this rank's elements, see mesh/structure_mesh.h for their orientation.
+  /// Facets of this rank's surface, see mesh/body_mesh.h for their orientation.
   const std::vector<BoundaryFacet<dim>> &facets() const { return body_mesh->facets; }
   /// Local numbers of the nodes of facets(), each once.
   const std::vector<unsigned int> &surface_nodes() const { return nodes_on_surface; }
@@ -65,9 +66,10 @@ public:
   }
 
 protected:
-  /// Entries of the surface; the name, mesh and nodes at their reference positions.
+  /// Entries of the surface, besides the section `Mesh`.
   static void declare_surface(Declaration &body_section);
-  StructuralBody(const Parameters &body, MPI_Comm comm);
+  /// Nodes are at their reference positions.
+  StructuralBody(const Parameters &body, std::unique_ptr<const BodyMesh<dim>> mesh);
 
   Vector vector(const unsigned int first_column, const unsigned int node) const
   {
@@ -87,9 +89,9 @@ protected:
       node_columns[first_column + d][node] = value[d];
   }
 
-  std::string                               body_name;
-  std::unique_ptr<const StructureMesh<dim>> body_mesh;
-  Columns                                   node_columns;
+  std::string                          body_name;
+  std::unique_ptr<const BodyMesh<dim>> body_mesh;
+  Columns                              node_columns;
 
 private:
   std::vector<unsigned int> nodes_on_surface;

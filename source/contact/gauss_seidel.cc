@@ -7,45 +7,40 @@
 
 namespace coracle::contact
 {
-namespace
-{
-/// Sweeps that settle which contacts are closed before the face solver goes on from there.
-constexpr unsigned int sweeps_per_face = 2;
-} // namespace
-
 template <int dim>
 GaussSeidel<dim>::GaussSeidel(MPI_Comm communicator, const bool accelerate)
-  : communicator(communicator), accelerate(accelerate), face_solver(communicator)
+  : communicator(communicator), accelerate(accelerate)
 {}
 
 template <int dim>
-typename GaussSeidel<dim>::Size
+double
 GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
                         const std::vector<double> &target,
                         const bool                 friction,
+                        const bool                 back,
                         std::vector<Vector>       &impulses,
-                        Velocities<dim>           &v)
+                        Velocities<dim>           &v) const
 {
-  Size        result;
-  const auto &rows = delassus.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c)
+  double            largest = 0;
+  const auto       &rows    = delassus.rows();
+  const std::size_t n       = rows.size();
+  for (std::size_t k = 0; k < n; ++k)
     {
-      const auto &row = rows[c];
-      step[c]         = Vector();
+      const std::size_t c   = (back ? n - 1 - k : k);
+      const auto       &row = rows[c];
       if (row.fixed)
         continue;
       const Vector u      = delassus.relative_velocity(row, v);
       const Vector next   = next_impulse<dim>(row, impulses[c], u, target[c], friction);
-      step[c]             = next - impulses[c];
-      impulses[c]         = next;
-      const double square = step[c].norm_square();
+      const Vector step   = next - impulses[c];
+      const double square = step.norm_square();
       if (square == 0)
         continue;
-      delassus.apply(row, step[c], v);
-      result.square += square * row.normal_inverse_mass;
-      result.largest = std::max(result.largest, std::sqrt(square) * row.normal_inverse_mass);
+      impulses[c] = next;
+      delassus.apply(row, step, v);
+      largest = std::max(largest, std::sqrt(square) * row.normal_inverse_mass);
     }
-  return result;
+  return largest;
 }
 
 template <int dim>
@@ -78,10 +73,6 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
                         Velocities<dim>           &v)
 {
   const auto &rows = delassus.rows();
-  step.resize(rows.size());
-  if (accelerate)
-    face_solver.reinit(delassus, v);
-
   // Velocities with the impulses to start from.
   before        = v;
   double unused = 0;
@@ -101,19 +92,21 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
   };
   if (finished())
     return report;
+  momentum.restart(impulses, v);
   for (;;)
     {
-      before    = v;
-      Size size = sweep(delassus, target, friction, impulses, v);
-      delassus.synchronise(v, before, size.square);
-      MPI_Allreduce(MPI_IN_PLACE, &size.largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
+      before         = v;
+      double largest = sweep(delassus, target, friction, false, impulses, v);
+      largest        = std::max(largest, sweep(delassus, target, friction, true, impulses, v));
+      double turn    = (accelerate ? momentum.turn(delassus, impulses) : 0.);
+      delassus.synchronise(v, before, turn);
+      MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
       ++report.iterations;
-      // The changes of a sweep are a cheap first indication.
-      if ((size.largest <= limits.tolerance || report.iterations >= limits.iterations) &&
-          finished())
+      // The changes of an iteration are a cheap first indication.
+      if ((largest <= limits.tolerance || report.iterations >= limits.iterations) && finished())
         return report;
-      if (accelerate && report.iterations % sweeps_per_face == 0)
-        report.face_steps += face_solver.improve(delassus, target, friction, impulses, v);
+      if (accelerate)
+        momentum.extrapolate(turn > 0, impulses, v);
     }
 }
 

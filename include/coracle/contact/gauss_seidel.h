@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/contact/face_solver.h>
+#include <coracle/contact/momentum.h>
 #include <coracle/contact/single_contact.h>
 
 namespace coracle::contact
@@ -18,8 +18,6 @@ struct IterationLimits
 struct IterationReport
 {
   unsigned int iterations = 0;
-  /// Steps of the face solver between the iterations; each costs about as much.
-  unsigned int face_steps = 0;
   /// Largest complementarity residual, as a velocity [m/s].
   double residual  = 0;
   bool   converged = true;
@@ -32,8 +30,9 @@ struct IterationReport
  * with u = J (v + M^-1 J^T P), by projected Gauss-Seidel on accumulated impulses
  * P: an increment may be negative, the sum may not.
  *
- * Between sweeps the FaceSolver accelerates; the last thing before the end is
- * always a sweep, so that P is admissible.
+ * An iteration is a sweep over the contacts there and one back, so that errors
+ * decay without oscillating, and Momentum can accelerate it. The last thing
+ * before the end is always such an iteration, so that P is admissible.
  */
 template <int dim>
 class GaussSeidel
@@ -58,18 +57,13 @@ public:
                         Velocities<dim>           &v);
 
 private:
-  /// How much a sweep has changed: sum of squares in energy norm [J], largest as a velocity [m/s].
-  struct Size
-  {
-    double square = 0, largest = 0;
-  };
-
-  /// One pass over the contacts; fills `step`.
-  Size sweep(const Delassus<dim>       &delassus,
-             const std::vector<double> &target,
-             const bool                 friction,
-             std::vector<Vector>       &impulses,
-             Velocities<dim>           &v);
+  /// One pass over the contacts in either direction; the largest change as a velocity [m/s].
+  double sweep(const Delassus<dim>       &delassus,
+               const std::vector<double> &target,
+               const bool                 friction,
+               const bool                 back,
+               std::vector<Vector>       &impulses,
+               Velocities<dim>           &v) const;
 
   /// Largest violation of the conditions above with everything held fixed, on this rank [m/s].
   double residual(const Delassus<dim>       &delassus,
@@ -78,10 +72,9 @@ private:
                   const std::vector<Vector> &impulses,
                   const Velocities<dim>     &v) const;
 
-  MPI_Comm            communicator;
-  bool                accelerate;
-  FaceSolver<dim>     face_solver;
-  std::vector<Vector> step;
-  Velocities<dim>     before;
+  MPI_Comm        communicator;
+  bool            accelerate;
+  Momentum<dim>   momentum;
+  Velocities<dim> before;
 };
 } // namespace coracle::contact

@@ -67,6 +67,7 @@ ContactSystem<dim>::ContactSystem(const ContactOptions &options, MPI_Comm commun
   : options(options)
   , communicator(communicator)
   , facets(communicator)
+  , search(options.search)
   , solver(options, communicator)
 {}
 

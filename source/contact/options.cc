@@ -3,6 +3,17 @@
 
 namespace coracle::contact
 {
+namespace
+{
+Search
+read_search(const std::string &name)
+{
+  return name == "bucket"      ? Search::bucket :
+         name == "all pairs" ? Search::all_pairs :
+                                 Search::aabb_tree;
+}
+} // namespace
+
 void
 ContactOptions::declare(Declaration &section)
 {
@@ -49,8 +60,11 @@ ContactOptions::declare(Declaration &section)
                    0.01);
   section.choice("Search",
                  "aabb tree",
-                 {"aabb tree"},
-                 "Global search: a tree of axis-aligned boxes around the facets (CGAL)");
+                 {"aabb tree", "bucket", "all pairs"},
+                 "How candidates are looked for, all with the same result. aabb tree: a tree of "
+                 "boxes around the facets (CGAL); bucket: points sorted into equal buckets of about "
+                 "a facet's size (Chen et al. 2015, section 3.1); all pairs: every point with every "
+                 "facet");
   section.choice("Local search",
                  "nearest on surface",
                  {"nearest on surface"},
@@ -60,6 +74,7 @@ ContactOptions::declare(Declaration &section)
 ContactOptions::ContactOptions(const Parameters &section)
 {
   friction           = section.quantity("Friction");
+  search             = read_search(section.choice("Search"));
   law                = (section.choice("Law") == "blended" ? Law::blended : Law::split);
   tolerance          = section.quantity("Tolerance");
   maximum_iterations = section.integer("Maximum iterations");

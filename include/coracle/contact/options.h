@@ -12,11 +12,20 @@ enum class Law
   blended
 };
 
+/// How candidates are looked for; see GlobalSearch.
+enum class Search
+{
+  aabb_tree,
+  bucket,
+  all_pairs
+};
+
 /// What the section `Contact` of a parameter file says.
 struct ContactOptions
 {
   /// Default of the surfaces' Coulomb coefficient [1].
   double friction = 0;
+  Search search   = Search::aabb_tree;
   Law    law      = Law::split;
   /// Share of the depth that the blended law turns into velocity, alpha [1].
   double alpha = 0.3;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
 #include <coracle/io/coupling_output.h>
+#include <coracle/io/rotation_columns.h>
 
 namespace coracle
 {
@@ -99,6 +100,8 @@ CouplingOutput<dim>::CouplingOutput(const Parameters     &root,
   if (settings.octree)
     octree = std::make_unique<MeshOutput>(directory, "octree");
   add_standard_columns<dim>(statistics, names);
+  for (const auto &body : coupling.points.bodies)
+    add_rotation_columns<dim>(statistics, body.name());
   statistics.add_column("contact.iterations", "");
   statistics.add_column("contact.residual", "m/s");
   statistics.add_column("contact.worst_violation", "m/s");
@@ -389,6 +392,14 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
 {
   statistics.begin_row();
   set_standard_columns(statistics, report);
+  auto summary = report.bodies.end() - coupling.points.bodies.size();
+  for (const auto &body : coupling.points.bodies)
+    {
+      set_rotation_columns<dim>(statistics,
+                                body.name(),
+                                rotation_of(body.points, summary->centre, summary->velocity, comm));
+      ++summary;
+    }
   const auto &solver = coupling.contacts.report().solver;
   statistics.set("contact.iterations", solver.velocity.iterations);
   statistics.set("contact.residual", solver.velocity.residual);

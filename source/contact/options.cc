@@ -8,9 +8,9 @@ namespace
 Search
 read_search(const std::string &name)
 {
-  return name == "bucket"      ? Search::bucket :
-         name == "all pairs" ? Search::all_pairs :
-                                 Search::aabb_tree;
+  return name == "bucket"      ? Search::bucket
+         : name == "all pairs" ? Search::all_pairs
+                               : Search::aabb_tree;
 }
 } // namespace
 
@@ -58,13 +58,14 @@ ContactOptions::declare(Declaration &section)
                    "How much farther than needed candidates are looked for, in contact distances; "
                    "more means rarer but longer searches",
                    0.01);
-  section.choice("Search",
-                 "aabb tree",
-                 {"aabb tree", "bucket", "all pairs"},
-                 "How candidates are looked for, all with the same result. aabb tree: a tree of "
-                 "boxes around the facets (CGAL); bucket: points sorted into equal buckets of about "
-                 "a facet's size (Chen et al. 2015, section 3.1); all pairs: every point with every "
-                 "facet");
+  section.choice(
+    "Search",
+    "aabb tree",
+    {"aabb tree", "bucket", "all pairs"},
+    "How candidates are looked for, all with the same result. aabb tree: a tree of "
+    "boxes around the facets (CGAL); bucket: points sorted into equal buckets of about "
+    "a facet's size (Chen et al. 2015, section 3.1); all pairs: every point with every "
+    "facet");
   section.choice("Local search",
                  "nearest on surface",
                  {"nearest on surface"},

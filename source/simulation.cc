@@ -155,6 +155,11 @@ private:
                                             (body.mesh().n_sheets() > 1 ? " sheets" : " sheet")
                                         : " elements") +
             ", mass " + with_unit(body.mass(), "kg"));
+    if (coupling.projected.n_particles > 0)
+      add("moved out",
+          std::to_string(coupling.projected.n_particles) +
+            " particles that started too near to a structure, by up to " +
+            with_unit(coupling.projected.farthest, "m"));
     const double dt = coupling.choose_time_step();
     add("first step", with_unit(dt, "s"));
     add("estimated steps", std::to_string(static_cast<std::uint64_t>(std::ceil(end_time / dt))));

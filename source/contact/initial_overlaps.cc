@@ -92,6 +92,7 @@ overlaps_near(const Surface<dim>               &surface,
   for (const auto &c : contacts)
     if (c.gap < (1 - 1e-6) * c.distance)
       result.push_back({c.set,
+                        c.point,
                         points[c.set].id(c.point),
                         points[c.set].point(c.point),
                         c.distance - c.gap,
@@ -151,6 +152,7 @@ overlaps_inside(const Surface<dim>               &surface,
               surface.bodies[b].kind == SurfaceKind::closed &&
               !std::binary_search(known.begin(), known.end(), std::make_pair(s, points[s].id(i))))
             result.push_back({s,
+                              i,
                               points[s].id(i),
                               points[s].point(i),
                               std::numeric_limits<double>::infinity(),

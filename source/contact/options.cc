@@ -66,6 +66,13 @@ ContactOptions::declare(Declaration &section)
     "boxes around the facets (CGAL); bucket: points sorted into equal buckets of about "
     "a facet's size (Chen et al. 2015, section 3.1); all pairs: every point with every "
     "facet");
+  section.choice(
+    "Initial overlap",
+    "refuse",
+    {"refuse", "project"},
+    "Particles that start in a body or nearer to a surface than the contact distance. "
+    "refuse: an error that names them; project: they are moved out, without a change of "
+    "velocity, density or stress");
   section.choice("Local search",
                  "nearest on surface",
                  {"nearest on surface"},
@@ -81,6 +88,8 @@ ContactOptions::ContactOptions(const Parameters &section)
   maximum_iterations = section.integer("Maximum iterations");
   accelerate         = section.flag("Accelerate");
   skin               = section.quantity("Skin");
+  if (section.choice("Initial overlap") == "project")
+    initial_overlap = InitialOverlap::project;
   if (law == Law::blended)
     alpha = section.quantity("Blend");
   else

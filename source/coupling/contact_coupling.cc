@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
-#include <coracle/contact/initial_overlaps.h>
 #include <coracle/coupling/contact_coupling.h>
-
-#include <sstream>
 
 namespace coracle
 {
@@ -19,7 +16,7 @@ constexpr unsigned int  field_shift    = 48;
 
 template <int dim>
 ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm)
-  : comm(comm), system(options, comm)
+  : initial_overlap(options.initial_overlap), comm(comm), system(options, comm)
 {}
 
 template <int dim>
@@ -167,63 +164,6 @@ ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &points, StructureSys
       ++s;
     }
   penetrations += system.audit(structure.publish_surface(), sets);
-}
-
-template <int dim>
-void
-ContactCoupling<dim>::refuse_initial_overlaps(const Parameters         &root,
-                                              MaterialPointSystem<dim> &points,
-                                              StructureSystem<dim>     &structure)
-{
-  make_point_sets(points, true);
-  const auto          mine = contact::initial_overlaps(structure.publish_surface(), sets, comm);
-  const std::uint64_t n    = mpi::sum<std::uint64_t>(mine.size(), comm);
-  if (n == 0)
-    return;
-
-  // Rank by rank the deepest one; the message tells of the deepest of all.
-  std::array<double, 4 + dim> deepest{};
-  for (const auto &overlap : mine)
-    if (overlap.depth > deepest[0])
-      {
-        deepest[0] = overlap.depth;
-        deepest[1] = overlap.id;
-        deepest[2] = overlap.set;
-        deepest[3] = overlap.body;
-        for (int d = 0; d < dim; ++d)
-          deepest[4 + d] = overlap.place[d];
-      }
-  // Equally deep ones are common under a flat surface: all ranks must name the same.
-  const auto of_all = dealii::Utilities::MPI::all_gather(comm, deepest);
-  deepest           = of_all.front();
-  for (const auto &other : of_all)
-    if (other[0] > deepest[0])
-      deepest = other;
-
-  const std::string  body           = std::next(points.bodies.begin(), deepest[2])->name();
-  const std::string  structure_name = structure.body_name(deepest[3]);
-  std::ostringstream found, cure;
-  found << n << (n == 1 ? " particle of '" : " particles of '") << body << "' in or too near to '"
-        << structure_name << "'; the deepest is number " << static_cast<std::uint64_t>(deepest[1])
-        << " at (";
-  for (int d = 0; d < dim; ++d)
-    found << (d > 0 ? ", " : "") << deepest[4 + d];
-  found << ") m, ";
-  if (std::isfinite(deepest[0]))
-    {
-      found << deepest[0] << " m nearer than the contact distance";
-      cure << "move '" << structure_name << "' away by " << deepest[0] << " m";
-    }
-  else
-    {
-      found << "deep inside";
-      cure << "move '" << structure_name << "' out of '" << body << "'";
-    }
-  throw root.section("Bodies").section(body).error("",
-                                                   "particles start inside a structure",
-                                                   found.str(),
-                                                   cure.str() + ", or shrink the region of '" +
-                                                     body + "'");
 }
 
 template class ContactCoupling<2>;

@@ -74,7 +74,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
   , contacts(contact::ContactOptions(root.section("Contact")), comm)
   , comm(comm)
 {
-  contacts.refuse_initial_overlaps(root, points, structure);
+  projected = contacts.resolve_initial_overlaps(root, points, structure);
 }
 
 template <int dim>

@@ -12,7 +12,7 @@ namespace coracle::contact
 template <int dim>
 struct Overlap
 {
-  unsigned int  set;
+  unsigned int  set, point;
   std::uint64_t id;
   /// Where the point is [m].
   dealii::Point<dim> place;

@@ -20,6 +20,13 @@ enum class Search
   all_pairs
 };
 
+/// What is done about points that start where they may not be.
+enum class InitialOverlap
+{
+  refuse,
+  project
+};
+
 /// What the section `Contact` of a parameter file says.
 struct ContactOptions
 {
@@ -38,7 +45,8 @@ struct ContactOptions
   unsigned int position_iterations = 50;
   /// Distance by which candidates reach farther than needed, in contact distances R (largest point
   /// radius plus half thickness) [1].
-  double skin = 1;
+  double         skin            = 1;
+  InitialOverlap initial_overlap = InitialOverlap::refuse;
 
   static void declare(Declaration &section);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/contact/contact_system.h>
+#include <coracle/contact/initial_overlaps.h>
 #include <coracle/coupling/material_point_system.h>
 #include <coracle/coupling/structure_system.h>
 
@@ -34,14 +35,38 @@ public:
   /// Momentum that contact has given to each material point body so far; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
-  /// Particles that lie in a body or nearer to it than the contact distance; a UserError if any.
-  /// Collective.
-  void refuse_initial_overlaps(const Parameters         &root,
-                               MaterialPointSystem<dim> &points,
-                               StructureSystem<dim>     &structure);
+  /// What Contact/Initial overlap = project did: particles moved, and the longest way [m].
+  struct Projected
+  {
+    std::uint64_t n_particles = 0;
+    double        farthest    = 0;
+  };
+
+  /**
+   * Particles that lie in a body or nearer to it than the contact distance are a UserError, or are
+   * moved out if the options say so; then it is a UserError if they have nowhere to go. Velocities,
+   * densities and stresses stay as they are. Collective.
+   */
+  Projected resolve_initial_overlaps(const Parameters         &root,
+                                     MaterialPointSystem<dim> &points,
+                                     StructureSystem<dim>     &structure);
 
 private:
-  void make_point_sets(MaterialPointSystem<dim> &points, const bool renumbered);
+  /// At the start: those of this rank's particles, and their number on all ranks.
+  std::vector<contact::Overlap<dim>> find_overlaps(MaterialPointSystem<dim> &points,
+                                                   StructureSystem<dim>     &structure,
+                                                   std::uint64_t            &n_particles);
+  /// Moves overlapping particles towards their places, less than a cell. Returns the longest way
+  /// left.
+  double            project(const std::vector<contact::Overlap<dim>> &overlaps,
+                            MaterialPointSystem<dim>                 &points,
+                            StructureSystem<dim>                     &structure);
+  [[noreturn]] void refuse(const Parameters                         &root,
+                           const std::vector<contact::Overlap<dim>> &overlaps,
+                           const std::uint64_t                       n_particles,
+                           const MaterialPointSystem<dim>           &points,
+                           const StructureSystem<dim>               &structure) const;
+  void              make_point_sets(MaterialPointSystem<dim> &points, const bool renumbered);
   /// Grid nodes and weights of one particle, hanging nodes replaced.
   template <typename Action>
   void for_each_node(const MaterialPointSystem<dim> &points,
@@ -49,6 +74,7 @@ private:
                      const unsigned int              row,
                      const Action                   &action) const;
 
+  const contact::InitialOverlap           initial_overlap;
   MPI_Comm                                comm;
   contact::ContactSystem<dim>             system;
   std::vector<contact::PointSet<dim>>     sets;

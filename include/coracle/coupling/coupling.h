@@ -45,6 +45,8 @@ public:
   MaterialPointSystem<dim>   points;
   ContactCoupling<dim>       contacts;
   TimingTable                timed;
+  /// At the start.
+  typename ContactCoupling<dim>::Projected projected;
 
   double        particle_steps = 0;
   std::uint64_t contact_steps = 0, unconverged_contact_steps = 0;

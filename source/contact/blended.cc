@@ -22,7 +22,7 @@ increment(const typename Delassus<dim>::Row &row,
       const double           normal     = impulse * row.normal;
       dealii::Tensor<1, dim> tangential = impulse - normal * row.normal;
       const auto             old        = tangential;
-      tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
+      tangential -= (u - (u * row.normal) * row.normal) / row.true_tangential_inverse_mass;
       const double limit = row.friction * (normal + more), size = tangential.norm();
       if (size > limit)
         tangential *= limit / size;

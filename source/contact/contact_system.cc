@@ -198,6 +198,8 @@ ContactSystem<dim>::solve(const std::vector<RigidUnknown<dim>> &rigid, const dou
   solver.solve(list, keys, rows.rows(), rows.unknowns(), rigid, dt);
   statistics.solver     = solver.report();
   statistics.n_contacts = solver.report().n_contacts;
+  statistics.work += solver.report().work;
+  statistics.energy_fed += std::max(0., solver.report().work);
   used += movement_margin * solver.report().largest_correction;
   sum_up(rigid);
 }

@@ -78,23 +78,18 @@ Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split)
 }
 
 template <int dim>
-void
-Delassus<dim>::prepare(Row &row) const
+double
+Delassus<dim>::tangential_inverse_mass(const Row &row, const bool split) const
 {
-  row.normal_response     = response(row, row.normal);
-  row.normal_inverse_mass = row.normal * row.normal_response;
-  row.true_inverse_mass   = row.normal * response(row, row.normal, false);
-
   Vector t1;
   if constexpr (dim == 2)
     {
-      t1[0]                       = -row.normal[1];
-      t1[1]                       = row.normal[0];
-      row.tangential_inverse_mass = t1 * response(row, t1);
+      t1[0] = -row.normal[1];
+      t1[1] = row.normal[0];
+      return t1 * response(row, t1, split);
     }
   else
     {
-      // The largest eigenvalue of the tangential block keeps the update from overshooting.
       unsigned int smallest = 0;
       for (int d = 1; d < dim; ++d)
         if (std::abs(row.normal[d]) < std::abs(row.normal[smallest]))
@@ -102,10 +97,24 @@ Delassus<dim>::prepare(Row &row) const
       t1[smallest] = 1;
       t1 -= (t1 * row.normal) * row.normal;
       t1 /= t1.norm();
-      const Vector t2 = dealii::cross_product_3d(row.normal, t1), k1 = response(row, t1),
-                   k2 = response(row, t2);
+      const Vector t2 = dealii::cross_product_3d(row.normal, t1), k1 = response(row, t1, split),
+                   k2 = response(row, t2, split);
       const double a = t1 * k1, b = t2 * k2, c = t1 * k2;
-      row.tangential_inverse_mass = 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c);
+      return 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c);
+    }
+}
+
+template <int dim>
+void
+Delassus<dim>::prepare(Row &row) const
+{
+  row.normal_response     = response(row, row.normal);
+  row.normal_inverse_mass = row.normal * row.normal_response;
+  row.true_inverse_mass   = row.normal * response(row, row.normal, false);
+  if (row.friction > 0)
+    {
+      row.tangential_inverse_mass      = tangential_inverse_mass(row, true);
+      row.true_tangential_inverse_mass = tangential_inverse_mass(row, false);
     }
   double largest = 0;
   for (std::size_t e = row.begin; e < row.end; ++e)
@@ -114,6 +123,9 @@ Delassus<dim>::prepare(Row &row) const
     if (b >= 0)
       largest += rigid_inverse_mass[b].norm();
   row.fixed = !(row.normal_inverse_mass > 1e-10 * largest);
+  // Where both sides' sliding is prescribed, friction changes nothing.
+  if (row.friction > 0 && !(row.tangential_inverse_mass > 1e-10 * largest))
+    row.friction = 0;
 }
 
 template <int dim>

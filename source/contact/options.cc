@@ -12,6 +12,14 @@ read_search(const std::string &name)
          : name == "all pairs" ? Search::all_pairs
                                : Search::aabb_tree;
 }
+
+Law
+read_law(const std::string &name)
+{
+  if (name == "stick/slip")
+    return Law::stick_slip;
+  return name == "blended" ? Law::blended : Law::split;
+}
 } // namespace
 
 void
@@ -22,10 +30,11 @@ ContactOptions::declare(Declaration &section)
   section.choice(
     "Law",
     "split",
-    {"split", "blended"},
+    {"split", "blended", "stick/slip"},
     "What contacts ask for. split: no approach beyond contact within the step, depth removed by "
-    "moving "
-    "positions only; blended: velocity and depth in one force (Song, Liu & Zhang 2020, Eq. 65)");
+    "moving positions only; blended: velocity and depth in one force, repeated (Song, Liu & Zhang "
+    "2020, Eq. 65); stick/slip: each contact as if alone, once (Chen et al. 2015, Eqs. 48-52). The "
+    "last two are there for comparison");
   section.when("Law", "blended")
     .quantity(
       "Blend", "0.3", "1", "alpha", "Share of the depth that is turned into velocity", 0, 1);
@@ -83,7 +92,7 @@ ContactOptions::ContactOptions(const Parameters &section)
 {
   friction           = section.quantity("Friction");
   search             = read_search(section.choice("Search"));
-  law                = (section.choice("Law") == "blended" ? Law::blended : Law::split);
+  law                = read_law(section.choice("Law"));
   tolerance          = section.quantity("Tolerance");
   maximum_iterations = section.integer("Maximum iterations");
   accelerate         = section.flag("Accelerate");
@@ -92,7 +101,7 @@ ContactOptions::ContactOptions(const Parameters &section)
     initial_overlap = InitialOverlap::project;
   if (law == Law::blended)
     alpha = section.quantity("Blend");
-  else
+  if (law == Law::split)
     {
       position_correction = section.flag("Position correction");
       position_iterations = section.integer("Maximum position iterations");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/contact/blended.h>
 #include <coracle/contact/solver.h>
+#include <coracle/contact/stick_slip.h>
 
 #include <algorithm>
 
@@ -39,8 +40,8 @@ Solver<dim>::solve(const std::vector<Contact<dim>>                 &contacts,
   delassus.reinit(contacts, rows, unknowns, rigid);
   velocity = delassus.predicted;
   measure(contacts);
-  if (options.law == Law::blended)
-    solve_blended_law(contacts, dt);
+  if (options.law != Law::split)
+    solve_near(contacts, dt);
   else
     {
       // Impulses grow with the step.
@@ -68,6 +69,26 @@ Solver<dim>::measure(const std::vector<Contact<dim>> &contacts)
 
 template <int dim>
 void
+Solver<dim>::measure_result(const std::vector<Contact<dim>> &contacts)
+{
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    {
+      const auto &row = delassus.rows()[c];
+      if (row.fixed)
+        continue;
+      const auto u = delassus.relative_velocity(row, velocity);
+      statistics.work +=
+        0.5 * (result.impulse[c] * (u + delassus.relative_velocity(row, delassus.predicted)));
+      if (options.law == Law::split || active[c])
+        statistics.worst_violation =
+          std::max(statistics.worst_violation, target[c] - u * contacts[c].normal);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
+  MPI_Allreduce(MPI_IN_PLACE, &statistics.work, 1, MPI_DOUBLE, MPI_SUM, communicator);
+}
+
+template <int dim>
+void
 Solver<dim>::solve_split(const std::vector<Contact<dim>> &contacts, const double dt)
 {
   target.resize(contacts.size());
@@ -83,13 +104,7 @@ Solver<dim>::solve_split(const std::vector<Contact<dim>> &contacts, const double
                        {options.tolerance * statistics.scale, options.maximum_iterations},
                        result.impulse,
                        velocity);
-  for (std::size_t c = 0; c < contacts.size(); ++c)
-    if (!delassus.rows()[c].fixed)
-      statistics.worst_violation =
-        std::max(statistics.worst_violation,
-                 target[c] -
-                   delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal);
-  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
+  measure_result(contacts);
 }
 
 template <int dim>
@@ -128,30 +143,29 @@ Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const do
 
 template <int dim>
 void
-Solver<dim>::solve_blended_law(const std::vector<Contact<dim>> &contacts, const double dt)
+Solver<dim>::solve_near(const std::vector<Contact<dim>> &contacts, const double dt)
 {
   target.resize(contacts.size());
   active.resize(contacts.size());
+  const double blend = (options.law == Law::blended ? options.alpha : 0.);
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
       active[c] = (contacts[c].gap < contacts[c].distance);
-      target[c] = options.alpha * (contacts[c].distance - contacts[c].gap) / dt;
+      target[c] = blend * (contacts[c].distance - contacts[c].gap) / dt;
     }
-  const double scale  = std::max(statistics.scale, 1e-300);
-  statistics.velocity = solve_blended(delassus,
-                                      target,
-                                      active,
-                                      {options.tolerance * scale, options.maximum_iterations},
-                                      result.impulse,
-                                      velocity,
-                                      communicator);
-  for (std::size_t c = 0; c < contacts.size(); ++c)
-    if (active[c] && !delassus.rows()[c].fixed)
-      statistics.worst_violation =
-        std::max(statistics.worst_violation,
-                 target[c] -
-                   delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal);
-  MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
+  const double scale = std::max(statistics.scale, 1e-300);
+  if (options.law == Law::stick_slip)
+    statistics.velocity =
+      solve_stick_slip(delassus, active, result.impulse, velocity, communicator);
+  else
+    statistics.velocity = solve_blended(delassus,
+                                        target,
+                                        active,
+                                        {options.tolerance * scale, options.maximum_iterations},
+                                        result.impulse,
+                                        velocity,
+                                        communicator);
+  measure_result(contacts);
 }
 
 template class Solver<2>;

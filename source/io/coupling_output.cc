@@ -105,6 +105,8 @@ CouplingOutput<dim>::CouplingOutput(const Parameters     &root,
   statistics.add_column("contact.iterations", "");
   statistics.add_column("contact.residual", "m/s");
   statistics.add_column("contact.worst_violation", "m/s");
+  statistics.add_column("contact.work", "J");
+  statistics.add_column("contact.energy_fed", "J");
   make_probes(root, coupling);
   reported_momentum.resize(names.size());
   reported_force.resize(names.size());
@@ -404,6 +406,8 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   statistics.set("contact.iterations", solver.velocity.iterations);
   statistics.set("contact.residual", solver.velocity.residual);
   statistics.set("contact.worst_violation", solver.worst_violation);
+  statistics.set("contact.work", coupling.contacts.report().work);
+  statistics.set("contact.energy_fed", coupling.contacts.report().energy_fed);
   std::vector<std::uint64_t> keys;
   for (const auto &[body, probe] : body_probes)
     probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);

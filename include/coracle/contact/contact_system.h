@@ -16,6 +16,9 @@ struct ContactReport
   /// Smallest g - R of all contacts [m]; 0 if there are none.
   double       worst_gap = 0;
   SolverReport solver;
+  /// Work of the contacts since the start [J], and the sum over those steps in which it was
+  /// positive: energy from nowhere, none with law `split`.
+  double work = 0, energy_fed = 0;
   /// Points that went through a surface since the start, found by the audit.
   unsigned long n_penetrations = 0;
   /// How often candidates were looked for anew, and how many pairs of point and facet this rank

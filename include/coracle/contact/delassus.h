@@ -50,6 +50,7 @@ public:
     double tangential_inverse_mass;
     /// The same with the true masses, as if no other rank touched the unknowns [1/kg].
     double true_inverse_mass;
+    double true_tangential_inverse_mass;
     double friction;
     /// Both sides are prescribed: no impulse can change anything.
     bool fixed;
@@ -113,6 +114,8 @@ private:
                                       Velocities<dim>   &v) const;
   void share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid);
   void prepare(Row &row) const;
+  /// The largest eigenvalue of the tangential block, so that updates do not overshoot [1/kg].
+  double tangential_inverse_mass(const Row &row, const bool split) const;
   /// Diagonal block times an impulse, with the split masses or the true ones.
   Vector response(const Row &row, const Vector &impulse, const bool split = true) const;
 

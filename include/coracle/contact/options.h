@@ -9,7 +9,8 @@ namespace coracle::contact
 enum class Law
 {
   split,
-  blended
+  blended,
+  stick_slip
 };
 
 /// How candidates are looked for; see GlobalSearch.

@@ -16,6 +16,9 @@ struct SolverReport
   double scale = 0;
   /// Greatest amount by which a contact is still too fast after the solve [m/s].
   double worst_violation = 0;
+  /// Work of the contacts in this step [J]: sum of P . (u_before + u_after) / 2, which is the
+  /// change of the kinetic energy of all unknowns plus what prescribed motion takes up.
+  double work = 0;
   /// Greatest displacement by the position solve [m].
   double largest_correction = 0;
 };
@@ -31,6 +34,7 @@ struct SolverReport
  * only.
  *
  * Law `blended`: Song, Liu & Zhang (2020), Eqs. 62-65, see solve_blended().
+ * Law `stick/slip`: Chen et al. (2015), Eqs. 48-52, see solve_stick_slip().
  */
 template <int dim>
 class Solver
@@ -58,8 +62,11 @@ public:
 private:
   void solve_split(const std::vector<Contact<dim>> &contacts, const double dt);
   void solve_positions(const std::vector<Contact<dim>> &contacts, const double dt);
-  void solve_blended_law(const std::vector<Contact<dim>> &contacts, const double dt);
+  /// The published laws, that act on contacts nearer than R only.
+  void solve_near(const std::vector<Contact<dim>> &contacts, const double dt);
   void measure(const std::vector<Contact<dim>> &contacts);
+  /// What the solve has left and done: worst violation of the targets, and work.
+  void measure_result(const std::vector<Contact<dim>> &contacts);
 
   ContactOptions      options;
   MPI_Comm            communicator;

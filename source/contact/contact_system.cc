@@ -68,6 +68,7 @@ ContactSystem<dim>::ContactSystem(const ContactOptions &options, MPI_Comm commun
   , communicator(communicator)
   , facets(communicator)
   , search(options.search)
+  , local_search(options.local_search)
   , solver(options, communicator)
 {}
 

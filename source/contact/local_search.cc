@@ -81,19 +81,34 @@ LocalSearch<dim>::collect_pairs(const PointSet<dim> &points,
 }
 
 template <int dim>
-void
-LocalSearch<dim>::measure_pairs(const PointSet<dim> &points)
+double
+LocalSearch<dim>::reach(const PointSet<dim> &points, const Pair &pair, const double travel) const
 {
-  for (auto &pair : pairs)
+  const auto &body = surface->bodies[surface->facets[pair.facet].body];
+  return travel + points.radius(pair.point) + 0.5 * body.thickness;
+}
+
+template <int dim>
+void
+LocalSearch<dim>::arrange_pairs(const PointSet<dim> &points, const double travel)
+{
+  pairs.erase(std::remove_if(pairs.begin(),
+                             pairs.end(),
+                             [&](const Pair &pair) {
+                               const double limit = reach(points, pair, travel);
+                               return !(pair.nearest.distance_square < limit * limit);
+                             }),
+              pairs.end());
+  const auto before = [this](const Pair &a, const Pair &b) {
+    const auto &fa = surface->facets[a.facet], &fb = surface->facets[b.facet];
+    return fa.body != fb.body ? fa.body < fb.body : fa.key < fb.key;
+  };
+  for (std::size_t begin = 0, end; begin < pairs.size(); begin = end)
     {
-      const auto x = points.point(pair.point);
-      if constexpr (dim == 3)
-        if (n_corners(surface->facets[pair.facet]) == 3)
-          {
-            pair.nearest = nearest_point_triangle(x, vertices(pair.facet));
-            continue;
-          }
-      pair.nearest = nearest_point(x, vertices(pair.facet));
+      for (end = begin + 1; end < pairs.size() && pairs[end].point == pairs[begin].point;)
+        ++end;
+      if (end > begin + 1)
+        std::sort(pairs.begin() + begin, pairs.begin() + end, before);
     }
 }
 
@@ -105,25 +120,66 @@ LocalSearch<dim>::find(const PointSet<dim>       &points,
                        const Motion              &motion,
                        std::vector<Contact<dim>> &contacts)
 {
-  const double travel = motion.travel();
-  collect_pairs(points, candidates, travel);
-  measure_pairs(points);
+  collect_pairs(points, candidates, motion.travel());
+  switch (method)
+    {
+      case LocalMethod::nearest_on_surface:
+        return find_on_surface(points, set, candidates, motion, contacts);
+      case LocalMethod::nearest_per_facet:
+        return nearest_per_facet(points, set, motion, contacts);
+      case LocalMethod::perpendicular_foot:
+        return perpendicular_feet(points, set, motion, contacts);
+    }
+}
 
-  const auto body = [this](const Pair &pair) { return surface->facets[pair.facet].body; };
-  // Drop what is out of reach, and bring each point's facets of one body together.
-  pairs.erase(std::remove_if(pairs.begin(),
-                             pairs.end(),
-                             [&](const Pair &pair) {
-                               const double limit = travel + points.radius(pair.point) +
-                                                    0.5 * surface->bodies[body(pair)].thickness;
-                               return pair.nearest.distance_square >= limit * limit;
-                             }),
-              pairs.end());
-  if (surface->bodies.size() > 1)
-    std::stable_sort(pairs.begin(), pairs.end(), [&](const Pair &a, const Pair &b) {
-      return a.point != b.point ? a.point < b.point : body(a) < body(b);
-    });
+template <int dim>
+void
+LocalSearch<dim>::measure_pairs(const PointSet<dim> &points, const double travel)
+{
+  if constexpr (dim == 2)
+    {
+      (void)travel;
+      for (auto &pair : pairs)
+        pair.nearest = nearest_point(points.point(pair.point), vertices(pair.facet));
+    }
+  else
+    {
+      quadrilaterals.clear();
+      for (unsigned int i = 0; i < pairs.size(); ++i)
+        if (n_corners(surface->facets[pairs[i].facet]) == 3)
+          pairs[i].nearest =
+            nearest_point_triangle(points.point(pairs[i].point), vertices(pairs[i].facet));
+        else
+          quadrilaterals.push_back(i);
+      batch.find(
+        quadrilaterals.size(),
+        [&](const std::size_t i) {
+          const auto &pair = pairs[quadrilaterals[i]];
+          return relative_corners(points.point(pair.point), vertices(pair.facet));
+        },
+        [&](const std::size_t i, const double xi, const double eta, const double square) {
+          auto        &pair  = pairs[quadrilaterals[i]];
+          const double limit = reach(points, pair, travel);
+          if (square < limit * limit)
+            pair.nearest = describe(points.point(pair.point), vertices(pair.facet), xi, eta);
+          else
+            pair.nearest.distance_square = square;
+        });
+    }
+}
 
+template <int dim>
+void
+LocalSearch<dim>::find_on_surface(const PointSet<dim>       &points,
+                                  const unsigned int         set,
+                                  const Candidates          &candidates,
+                                  const Motion              &motion,
+                                  std::vector<Contact<dim>> &contacts)
+{
+  measure_pairs(points, motion.travel());
+  arrange_pairs(points, motion.travel());
+
+  const auto  body   = [this](const Pair &pair) { return surface->facets[pair.facet].body; };
   std::size_t next   = 0;
   const auto  forget = [&](const unsigned int point, const unsigned int b) {
     if (surface->bodies[b].kind == SurfaceKind::sheet)
@@ -160,31 +216,23 @@ LocalSearch<dim>::minima_of_body(const dealii::Point<dim> &x_p,
       const auto &nearest = pairs[i].nearest;
       if (!connections.is_minimum(x_p, pairs[i].facet, nearest))
         continue;
-      bool known = false;
-      for (auto &other : minima)
-        {
-          auto        &kept = pairs[other.pair];
-          const double size =
-            same_place * (balls[kept.facet].radius + balls[pairs[i].facet].radius);
-          if (connections.same_feature(kept.facet, kept.nearest, pairs[i].facet, nearest) ||
-              nearest.place.distance_square(kept.nearest.place) < size * size)
-            {
-              known = true;
-              if (surface->facets[pairs[i].facet].key < surface->facets[kept.facet].key)
-                other.pair = i;
-              break;
-            }
-        }
-      if (!known)
-        minima.push_back({static_cast<unsigned int>(i), {}, 0});
-    }
-  for (auto &minimum : minima)
-    {
-      const auto &pair     = pairs[minimum.pair];
-      minimum.pseudonormal = connections.pseudonormal(pair.facet, pair.nearest);
-      const double along   = (x_p - pair.nearest.place) * minimum.pseudonormal.normal;
-      const double tiny    = 1e-12 * balls[pair.facet].radius;
-      minimum.side         = (along > tiny ? 1 : (along < -tiny ? -1 : 0));
+      // The facet with the lowest key comes first and keeps what several share.
+      const bool known = std::any_of(minima.begin(), minima.end(), [&](const Minimum &other) {
+        const auto  &kept = pairs[other.pair];
+        const double size = same_place * (balls[kept.facet].radius + balls[pairs[i].facet].radius);
+        return connections.same_feature(kept.facet, kept.nearest, pairs[i].facet, nearest) ||
+               nearest.place.distance_square(kept.nearest.place) < size * size;
+      });
+      if (known)
+        continue;
+      const auto pseudonormal = connections.pseudonormal(pairs[i].facet, nearest);
+      // A facet without area leaves its place to its neighbours.
+      if (nearest.region == Region::interior && pseudonormal.normal.norm_square() == 0)
+        continue;
+      const double along = (x_p - nearest.place) * pseudonormal.normal;
+      const double tiny  = 1e-12 * balls[pairs[i].facet].radius;
+      const int    side  = (along > tiny ? 1 : (along < -tiny ? -1 : 0));
+      minima.push_back({static_cast<unsigned int>(i), pseudonormal, side});
     }
 }
 
@@ -207,17 +255,52 @@ LocalSearch<dim>::own_side(const PointSet<dim> &points,
   if (kept == 0)
     {
       kept = nearest.side;
-      if (nearest.side == 0)
-        {
-          // On the sheet itself: the side it comes from.
-          auto        velocity = points.point_velocity(point);
-          const auto &nodes    = surface->facets[pair.facet].nodes;
-          for (unsigned int k = 0; k < nodes.size(); ++k)
-            velocity -= pair.nearest.weights[k] * surface->nodes[nodes[k]].velocity;
-          kept = (velocity * nearest.pseudonormal.normal > 0 ? -1 : 1);
-        }
+      if (nearest.side == 0) // on the sheet itself: the side it comes from
+        kept = (relative_velocity(points, pair) * nearest.pseudonormal.normal > 0 ? -1 : 1);
     }
   return kept < 0 ? -1 : 1;
+}
+
+template <int dim>
+Contact<dim>
+LocalSearch<dim>::start_contact(const PointSet<dim> &points,
+                                const unsigned int   set,
+                                const Pair          &pair) const
+{
+  const auto  &body = surface->bodies[surface->facets[pair.facet].body];
+  Contact<dim> contact;
+  contact.set      = set;
+  contact.point    = pair.point;
+  contact.facet    = pair.facet;
+  contact.region   = pair.nearest.region;
+  contact.weights  = pair.nearest.weights;
+  contact.place    = pair.nearest.place;
+  contact.distance = 0.5 * body.thickness + points.radius(pair.point);
+  contact.friction = body.friction;
+  return contact;
+}
+
+template <int dim>
+dealii::Tensor<1, dim>
+LocalSearch<dim>::relative_velocity(const PointSet<dim> &points, const Pair &pair) const
+{
+  auto        velocity = points.point_velocity(pair.point);
+  const auto &nodes    = surface->facets[pair.facet].nodes;
+  for (unsigned int k = 0; k < nodes.size(); ++k)
+    velocity -= pair.nearest.weights[k] * surface->nodes[nodes[k]].velocity;
+  return velocity;
+}
+
+template <int dim>
+bool
+LocalSearch<dim>::within_band(const PointSet<dim> &points,
+                              const Pair          &pair,
+                              const Motion        &motion,
+                              const Contact<dim>  &contact) const
+{
+  const double speed = std::max(relative_velocity(points, pair).norm(),
+                                0.25 * (motion.point_speed + motion.node_speed));
+  return contact.gap < contact.distance + 2 * motion.dt * speed;
 }
 
 template <int dim>
@@ -243,19 +326,8 @@ LocalSearch<dim>::contacts_of_body(const PointSet<dim>       &points,
     {
       if (passed(minimum) ? &minimum != &nearest : passed(nearest))
         continue;
-      const auto &pair  = pairs[minimum.pair];
-      const auto &facet = surface->facets[pair.facet];
-      const auto &body  = surface->bodies[facet.body];
-
-      Contact<dim> contact;
-      contact.set      = set;
-      contact.point    = point;
-      contact.facet    = pair.facet;
-      contact.region   = pair.nearest.region;
-      contact.weights  = pair.nearest.weights;
-      contact.place    = pair.nearest.place;
-      contact.distance = 0.5 * body.thickness + points.radius(point);
-      contact.friction = body.friction;
+      const auto &pair    = pairs[minimum.pair];
+      auto        contact = start_contact(points, set, pair);
 
       // Inside a facet the pseudonormal is the more accurate; on the surface there is nothing else.
       const auto   offset = x_p - pair.nearest.place;
@@ -267,12 +339,7 @@ LocalSearch<dim>::contacts_of_body(const PointSet<dim>       &points,
         contact.normal = (passed(minimum) ? -1 : 1) * offset / length;
       contact.gap = offset * contact.normal;
 
-      auto velocity = points.point_velocity(point);
-      for (unsigned int k = 0; k < facet.nodes.size(); ++k)
-        velocity -= contact.weights[k] * surface->nodes[facet.nodes[k]].velocity;
-      const double speed =
-        std::max(velocity.norm(), 0.25 * (motion.point_speed + motion.node_speed));
-      if (contact.gap < contact.distance + 2 * motion.dt * speed)
+      if (contact.normal.norm_square() > 0 && within_band(points, pair, motion, contact))
         contacts.push_back(contact);
     }
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/contact/nearest_point.h>
-#include <coracle/contact/nearest_point_strips.h>
 
 namespace coracle::contact
 {
@@ -112,12 +111,7 @@ describe(const dealii::Point<3>                &x_p,
 NearestPoint<3>
 nearest_point(const dealii::Point<3> &x_p, const std::array<dealii::Point<3>, 4> &vertices)
 {
-  std::array<Vector<3, double>, 4> x;
-  for (unsigned int k = 0; k < 4; ++k)
-    for (int d = 0; d < 3; ++d)
-      x[k][d] = vertices[k][d] - x_p[d];
-  const auto facet = make_bilinear(x);
-  const auto found = (convexity(facet) >= 0. ? minimise_convex(facet) : minimise_by_strips(facet));
+  const auto found = nearest_natural_point(relative_corners(x_p, vertices));
   return describe(x_p, vertices, found.xi, found.eta);
 }
 } // namespace coracle::contact

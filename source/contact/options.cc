@@ -20,6 +20,14 @@ read_law(const std::string &name)
     return Law::stick_slip;
   return name == "blended" ? Law::blended : Law::split;
 }
+
+LocalMethod
+read_local_search(const std::string &name)
+{
+  return name == "nearest per facet"    ? LocalMethod::nearest_per_facet
+         : name == "perpendicular foot" ? LocalMethod::perpendicular_foot
+                                        : LocalMethod::nearest_on_surface;
+}
 } // namespace
 
 void
@@ -84,14 +92,19 @@ ContactOptions::declare(Declaration &section)
     "velocity, density or stress");
   section.choice("Local search",
                  "nearest on surface",
-                 {"nearest on surface"},
-                 "Contacts are the local minima of the distance to the whole surface");
+                 {"nearest on surface", "nearest per facet", "perpendicular foot"},
+                 "Which pairs of point and facet are contacts. nearest on surface: local minima of "
+                 "the distance to the whole surface; for comparison, nearest per facet: every "
+                 "facet's nearest point (Song, Liu & Zhang 2020), and perpendicular foot: every "
+                 "facet that the foot of the perpendicular lies in (Chen et al. 2015), which "
+                 "leaves cracks at convex edges");
 }
 
 ContactOptions::ContactOptions(const Parameters &section)
 {
   friction           = section.quantity("Friction");
   search             = read_search(section.choice("Search"));
+  local_search       = read_local_search(section.choice("Local search"));
   law                = read_law(section.choice("Law"));
   tolerance          = section.quantity("Tolerance");
   maximum_iterations = section.integer("Maximum iterations");

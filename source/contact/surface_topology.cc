@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/contact/surface_topology.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace coracle::contact
@@ -88,6 +89,13 @@ SurfaceTopology<dim>::reinit(const Surface<dim> &s)
   facets.resize(begin.back());
   std::vector<unsigned int> next(begin.begin(), begin.end() - 1);
   each([&](const unsigned int node, const unsigned int f) { facets[next[node]++] = f; });
+  // Sums over the facets at a node must not depend on how facets are numbered.
+  for (unsigned int i = 0; i < s.nodes.size(); ++i)
+    std::sort(facets.begin() + begin[i],
+              facets.begin() + begin[i + 1],
+              [&s](const unsigned int a, const unsigned int b) {
+                return s.facets[a].key < s.facets[b].key;
+              });
 }
 
 namespace

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <coracle/contact/global_search.h>
+#include <coracle/contact/nearest_point_pack.h>
+#include <coracle/contact/options.h>
 #include <coracle/contact/surface_topology.h>
 
 namespace coracle::contact
@@ -21,6 +23,12 @@ namespace coracle::contact
  * the point belongs to, which is fixed when the point comes near and forgotten
  * when it is gone or goes round the sheet's rim.
  *
+ * The other methods (LocalMethod) take each pair of point and facet for itself and
+ * know no sides; see local_search_per_facet.cc. They are there to compare with.
+ *
+ * The contacts depend on positions and keys, not on how facets are numbered or
+ * spread over ranks.
+ *
  * Band: R + 2 dt times the relative speed of point and facet, but at least a
  * quarter of the greatest relative speed, so that a point at rest which is hit
  * within the step is not overlooked.
@@ -38,6 +46,9 @@ public:
     /// Distance beyond R within which a side is kept and contacts are looked for [m].
     double travel() const { return 2 * dt * (point_speed + node_speed); }
   };
+
+  explicit LocalSearch(const LocalMethod method = LocalMethod::nearest_on_surface) : method(method)
+  {}
 
   /// To be called when facets have come, gone or been renumbered.
   void reinit(const Surface<dim> &surface);
@@ -74,7 +85,15 @@ private:
 
   void
   collect_pairs(const PointSet<dim> &points, const Candidates &candidates, const double travel);
-  void measure_pairs(const PointSet<dim> &points);
+  /// Drops pairs out of reach, and sorts each point's by body and key of the facet.
+  void arrange_pairs(const PointSet<dim> &points, const double travel);
+
+  void find_on_surface(const PointSet<dim>       &points,
+                       const unsigned int         set,
+                       const Candidates          &candidates,
+                       const Motion              &motion,
+                       std::vector<Contact<dim>> &contacts);
+  void measure_pairs(const PointSet<dim> &points, const double travel);
   void
   minima_of_body(const dealii::Point<dim> &x_p, const std::size_t begin, const std::size_t end);
   /// Side that the point belongs to, for a sheet kept up to date in its column; 0 where it may be
@@ -85,8 +104,30 @@ private:
                         const Motion              &motion,
                         std::vector<Contact<dim>> &contacts) const;
 
+  void nearest_per_facet(const PointSet<dim>       &points,
+                         const unsigned int         set,
+                         const Motion              &motion,
+                         std::vector<Contact<dim>> &contacts);
+  void perpendicular_feet(const PointSet<dim>       &points,
+                          const unsigned int         set,
+                          const Motion              &motion,
+                          std::vector<Contact<dim>> &contacts);
+
+  /// Distance beyond which a pair is out of the band [m].
+  double reach(const PointSet<dim> &points, const Pair &pair, const double travel) const;
+  /// The pair's contact but for normal and gap.
+  Contact<dim>
+  start_contact(const PointSet<dim> &points, const unsigned int set, const Pair &pair) const;
+  /// Velocity of the point against the facet's place [m/s].
+  dealii::Tensor<1, dim> relative_velocity(const PointSet<dim> &points, const Pair &pair) const;
+  bool                   within_band(const PointSet<dim> &points,
+                                     const Pair          &pair,
+                                     const Motion        &motion,
+                                     const Contact<dim>  &contact) const;
+
   std::array<dealii::Point<dim>, vertices_per_facet<dim>> vertices(const unsigned int facet) const;
 
+  LocalMethod          method;
   const Surface<dim>  *surface = nullptr;
   SurfaceTopology<dim> connections;
 
@@ -98,7 +139,9 @@ private:
   };
   std::vector<Ball> balls;
 
-  std::vector<Pair>    pairs;
-  std::vector<Minimum> minima;
+  std::vector<Pair>         pairs;
+  std::vector<unsigned int> quadrilaterals;
+  NearestPointBatch         batch;
+  std::vector<Minimum>      minima;
 };
 } // namespace coracle::contact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/contact/contact.h>
+#include <coracle/contact/nearest_point_pack.h>
 
 #include <utility>
 
@@ -44,13 +45,11 @@ NearestPoint<3> nearest_point_triangle(const dealii::Point<3>                &x_
  * reported, because only some of these are contacts of the whole surface
  * (see SurfaceMinimum).
  *
- * For a given eta the best xi is known in closed form, which leaves a function
- * of eta alone. Where the squared distance is convex on the whole square (a
- * test of a few products decides; true for all but badly shaped facets and far
- * points) a bracketed Newton iteration on its derivative finds the minimum.
- * Otherwise the square is cut into strips that are either too far away, or
- * convex after all, until none is left: the answer is never another local
- * minimum that is farther by more than 1e-10 of the facet's size.
+ * Newton's iteration on eta, with the best xi of each eta in closed form, ends
+ * in a local minimum; that it is the global one is then proven (global_minimum.h)
+ * or the search goes on. So the answer is never another local minimum that is
+ * farther by more than 1e-10 of the facet's size. Many pairs at once are
+ * much faster: NearestPointBatch, whose results are the same.
  *
  * @param x_p      point, current configuration [m]
  * @param vertices four corners, counter-clockwise seen from outside [m]
@@ -58,11 +57,22 @@ NearestPoint<3> nearest_point_triangle(const dealii::Point<3>                &x_
  * Never fails: a facet that has collapsed to an edge or a point is answered by
  * that edge or point.
  *
- * Source: the definition is Song, Liu & Zhang (2020), Eq. 35; elimination of
- * xi as for ruled surfaces.
+ * Source: the definition is Song, Liu & Zhang (2020), Eq. 35; their steepest
+ * descent (Eqs. 41-51) is in steepest_descent.h.
  */
 NearestPoint<3> nearest_point(const dealii::Point<3>                &x_p,
                               const std::array<dealii::Point<3>, 4> &vertices);
+
+/// The corners as seen from the point.
+inline NearestPointBatch::Corners
+relative_corners(const dealii::Point<3> &x_p, const std::array<dealii::Point<3>, 4> &vertices)
+{
+  NearestPointBatch::Corners x;
+  for (unsigned int k = 0; k < 4; ++k)
+    for (int d = 0; d < 3; ++d)
+      x[k][d] = vertices[k][d] - x_p[d];
+  return x;
+}
 
 /// Weights, place, distance and region of natural coordinates that a search has found.
 NearestPoint<3> describe(const dealii::Point<3>                &x_p,

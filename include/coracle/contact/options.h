@@ -28,13 +28,22 @@ enum class InitialOverlap
   project
 };
 
+/// Which points of facets make contacts; see LocalSearch.
+enum class LocalMethod
+{
+  nearest_on_surface,
+  nearest_per_facet,
+  perpendicular_foot
+};
+
 /// What the section `Contact` of a parameter file says.
 struct ContactOptions
 {
   /// Default of the surfaces' Coulomb coefficient [1].
-  double friction = 0;
-  Search search   = Search::aabb_tree;
-  Law    law      = Law::split;
+  double      friction     = 0;
+  Search      search       = Search::aabb_tree;
+  LocalMethod local_search = LocalMethod::nearest_on_surface;
+  Law         law          = Law::split;
   /// Share of the depth that the blended law turns into velocity, alpha [1].
   double alpha = 0.3;
   /// Residual at which the solver stops, relative to the greatest approach speed [1].

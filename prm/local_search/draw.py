@@ -19,7 +19,7 @@ import numpy as np  # noqa: E402
 
 METHODS = ["perpendicular foot", "nearest on surface"]
 SCENES = [("one_facet", "one facet"), ("two_facets", "two facets that share an edge")]
-N_DRAWN = 1200
+N_DRAWN = 1000
 
 
 def read(path):
@@ -55,7 +55,7 @@ def draw(axes, folder, scene, title, method):
     n = [int(np.sum(points[method] == status)) for status in (1, 2)]
     axes.set_title(f"{title}: {method}\n{n[0]} inside, {n[1]} at edges", fontsize=9)
     axes.set(xlim=(-1, 1), ylim=(-1, 1), zlim=(-1, 1))
-    axes.set_box_aspect((1, 1, 1), zoom=1.2)
+    axes.set_box_aspect((1, 1, 1), zoom=1.05)
     axes.view_init(elev=18, azim=-70)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_ticks([-1, 0, 1])
@@ -67,7 +67,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("-o", "--output", default="local_search.png")
     arguments = parser.parse_args()
-    figure = plt.figure(figsize=(9, 8.4), dpi=80)
+    figure = plt.figure(figsize=(9, 8.4), dpi=76)
     for i, (scene, title) in enumerate(SCENES):
         for j, method in enumerate(METHODS):
             axes = figure.add_subplot(2, 2, 2 * i + j + 1, projection="3d")

@@ -11,22 +11,20 @@ namespace
 template <int dim>
 dealii::Tensor<1, dim>
 increment(const typename Delassus<dim>::Row &row,
-          const dealii::Tensor<1, dim>      &impulse,
           const dealii::Tensor<1, dim>      &u,
           const double                       wanted)
 {
-  const double           more   = std::max(0., wanted - u * row.normal) / row.true_inverse_mass;
+  const double approach = u * row.normal, more = (wanted - approach) / row.true_inverse_mass;
+  if (more <= 0)
+    return dealii::Tensor<1, dim>();
   dealii::Tensor<1, dim> result = more * row.normal;
   if (row.friction > 0)
     {
-      const double           normal     = impulse * row.normal;
-      dealii::Tensor<1, dim> tangential = impulse - normal * row.normal;
-      const auto             old        = tangential;
-      tangential -= (u - (u * row.normal) * row.normal) / row.true_tangential_inverse_mass;
-      const double limit = row.friction * (normal + more), size = tangential.norm();
+      auto         tangential = -(u - approach * row.normal) / row.true_tangential_inverse_mass;
+      const double limit = row.friction * more, size = tangential.norm();
       if (size > limit)
         tangential *= limit / size;
-      result += tangential - old;
+      result += tangential;
     }
   return result;
 }
@@ -53,7 +51,7 @@ solve_blended(Delassus<dim>                       &delassus,
         if (active[c] && !rows[c].fixed)
           {
             const auto u    = delassus.relative_velocity(rows[c], before);
-            const auto step = increment<dim>(rows[c], impulses[c], u, wanted[c]);
+            const auto step = increment<dim>(rows[c], u, wanted[c]);
             report.residual = std::max(report.residual, step.norm() * rows[c].true_inverse_mass);
             impulses[c] += step;
             delassus.apply(rows[c], step, v);

@@ -10,7 +10,9 @@ namespace coracle::contact
  * contact works out, as if it were alone, the impulse that Eq. 65 asks for at
  * the present velocities, positive ones are applied all at once, and so on until
  * none is left. Impulses never shrink, so that pairs that share nodes overshoot:
- * kept for comparison with the published method.
+ * kept for comparison with the published method. With friction, each of these
+ * impulses stops the sliding as far as friction times its normal part allows
+ * (Chen et al. 2015, Eq. 52).
  *
  * @param wanted   normal velocity that each contact asks for, alpha (R - g) / dt [m/s]
  * @param active   contacts nearer than R; others do nothing

@@ -51,10 +51,11 @@ ContactOptions::declare(Declaration &section)
           true,
           "Remove remaining depth by moving positions, never velocities");
   section.when("Law", "split")
-    .integer("Maximum position iterations",
-             50,
-             "Sweeps of the position correction after which it goes on in the next step",
-             1);
+    .integer(
+      "Maximum position iterations",
+      50,
+      "Sweeps there and back of the position correction after which it goes on in the next step",
+      1);
   section.quantity("Tolerance",
                    "1e-4",
                    "1",
@@ -63,11 +64,12 @@ ContactOptions::declare(Declaration &section)
                    "greatest approach speed",
                    0,
                    1);
-  section.integer("Maximum iterations",
-                  1000,
-                  "Sweeps of the contact solver after which a step counts as not converged",
-                  1);
-  section.flag("Accelerate", true, "Conjugate directions between the sweeps of the contact solver");
+  section.integer(
+    "Maximum iterations",
+    1000,
+    "Sweeps there and back of the contact solver after which a step counts as not converged",
+    1);
+  section.flag("Accelerate", true, "Momentum in the iterations of the contact solver");
   section.quantity("Skin",
                    "1",
                    "1",

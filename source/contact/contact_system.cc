@@ -84,7 +84,7 @@ ContactSystem<dim>::measure(const Surface<dim>               &owned,
   for (const auto &set : points)
     {
       here.point_speed = std::max(here.point_speed, maximum_speed(set));
-      here.radius      = std::max(here.radius, maximum_radius(set));
+      here.radius      = std::max({here.radius, maximum_radius(set), set.least_skin});
     }
   for (unsigned int i = 0; i < owned.nodes.size(); ++i)
     {
@@ -122,7 +122,7 @@ ContactSystem<dim>::rebuild(const Surface<dim>               &owned,
   else
     for (const auto &set : points)
       append_boxes(set, maximum_radius(set) + reach, boxes);
-  facets.rebuild(owned, boxes);
+  facets.rebuild(owned, boxes, points);
   local_search.reinit(facets.surface());
   search.rebuild(facets.surface(), points, reach);
 
@@ -174,7 +174,12 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
   keys.clear();
   local_search.update();
   for (unsigned int s = 0; s < points.size(); ++s)
-    local_search.find(points[s], s, search.candidates(s), motion, list);
+    {
+      const std::size_t first = list.size();
+      local_search.find(points[s], s, search.candidates(s), motion, list);
+      if (points[s].body >= 0)
+        list.resize(complete_node_contacts(points[s], first));
+    }
 
   std::vector<const Candidates *> candidate_lists;
   for (unsigned int s = 0; s < points.size(); ++s)
@@ -184,12 +189,30 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
   statistics.worst_gap = std::numeric_limits<double>::max();
   for (const auto &contact : list)
     {
-      keys.push_back({points[contact.set].id(contact.point), surface().facets[contact.facet].key});
+      keys.push_back({points[contact.set].id(contact.point) ^ (std::uint64_t(contact.set) << 54),
+                      surface().facets[contact.facet].key});
       statistics.worst_gap = std::min(statistics.worst_gap, contact.gap - contact.distance);
     }
   MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_gap, 1, MPI_DOUBLE, MPI_MIN, communicator);
   if (statistics.worst_gap == std::numeric_limits<double>::max())
     statistics.worst_gap = 0;
+}
+
+template <int dim>
+std::size_t
+ContactSystem<dim>::complete_node_contacts(const PointSet<dim> &points, const std::size_t first)
+{
+  std::size_t kept = first;
+  for (std::size_t c = first; c < list.size(); ++c)
+    {
+      auto contact       = list[c];
+      contact.point_body = points.body;
+      contact.point_node = facets.local_node(points.surface_node[contact.point]);
+      contact.friction   = std::min(contact.friction, surface().bodies[points.body].friction);
+      if (anything_moves(contact, surface()))
+        list[kept++] = contact;
+    }
+  return kept;
 }
 
 template <int dim>

@@ -26,10 +26,12 @@ FacetExchange<dim>::FacetExchange(MPI_Comm communicator) : communicator(communic
 
 template <int dim>
 void
-FacetExchange<dim>::rebuild(const Surface<dim> &owned, const std::vector<Box> &reach)
+FacetExchange<dim>::rebuild(const Surface<dim>               &owned,
+                            const std::vector<Box>           &reach,
+                            const std::vector<PointSet<dim>> &points)
 {
   const auto boxes = gather(reach, communicator);
-  const int  n     = n_ranks(communicator);
+  const int  n = n_ranks(communicator), me = my_rank(communicator);
   sent.clear();
   std::vector<std::vector<SurfaceNode<dim>>> nodes(n);
   std::vector<std::vector<FacetMessage>>     facets(n);
@@ -39,6 +41,14 @@ FacetExchange<dim>::rebuild(const Surface<dim> &owned, const std::vector<Box> &r
     {
       Partner partner{r, {}, {}, {}};
       std::fill(place.begin(), place.end(), none);
+      const auto send_node = [&](const unsigned int node) {
+        if (place[node] == none)
+          {
+            place[node] = partner.index.size();
+            partner.index.push_back(node);
+            nodes[r].push_back(owned.nodes[node]);
+          }
+      };
       for (const auto &facet : owned.facets)
         {
           const Box box = facet_box(owned, facet, 0.5 * owned.bodies[facet.body].thickness);
@@ -49,22 +59,28 @@ FacetExchange<dim>::rebuild(const Surface<dim> &owned, const std::vector<Box> &r
           FacetMessage message{{}, facet.body, facet.key};
           for (unsigned int k = 0; k < facet.nodes.size(); ++k)
             {
-              const unsigned int node = facet.nodes[k];
-              if (place[node] == none)
-                {
-                  place[node] = partner.index.size();
-                  partner.index.push_back(node);
-                  nodes[r].push_back(owned.nodes[node]);
-                }
-              message.nodes[k] = place[node];
+              send_node(facet.nodes[k]);
+              message.nodes[k] = place[facet.nodes[k]];
             }
           facets[r].push_back(message);
+        }
+      if (r == me)
+        {
+          for (const auto &set : points)
+            if (set.body >= 0)
+              std::for_each(set.surface_node, set.surface_node + set.n_points, send_node);
+          local_nodes = place;
         }
       if (!partner.index.empty())
         sent.push_back(std::move(partner));
     }
   local.bodies = owned.bodies;
   merge(all_to_all(nodes, communicator), all_to_all(facets, communicator));
+  // From places in the message to oneself.
+  for (const auto &partner : received)
+    if (partner.rank == me)
+      for (unsigned int &node : local_nodes)
+        node = (node == none ? none : partner.index[node]);
 }
 
 template <int dim>

@@ -12,6 +12,29 @@ GlobalSearch<dim>::GlobalSearch(const Search chosen)
     method.template emplace<AllPairsSearch>();
 }
 
+namespace
+{
+/// Leaves out what surface nodes may not touch, see PointSet::may_touch.
+template <int dim>
+void
+keep_touchable(const Surface<dim> &surface, const PointSet<dim> &points, Candidates &list)
+{
+  Candidates all;
+  std::swap(all, list);
+  for (std::size_t i = 0; i < all.point.size(); ++i)
+    {
+      for (std::size_t k = all.begin[i]; k < all.begin[i + 1]; ++k)
+        if (points.may_touch(all.point[i], surface, surface.facets[all.facet[k]]))
+          list.facet.push_back(all.facet[k]);
+      if (list.facet.size() > list.begin.back())
+        {
+          list.point.push_back(all.point[i]);
+          list.begin.push_back(list.facet.size());
+        }
+    }
+}
+} // namespace
+
 template <int dim>
 void
 GlobalSearch<dim>::rebuild(const Surface<dim>               &surface,
@@ -35,6 +58,8 @@ GlobalSearch<dim>::rebuild(const Surface<dim>               &surface,
           lists[s].clear();
           if (!boxes.empty())
             search.find(points[s], lists[s]);
+          if (points[s].body >= 0)
+            keep_touchable(surface, points[s], lists[s]);
         }
     },
     method);

@@ -74,13 +74,43 @@ n_meetings(const Surface<3> &surface, const Facet<3> &facet, const dealii::Point
   return n;
 }
 
+/// Is the point a surface node that cannot move, where the surface cannot either?
+template <int dim>
+bool
+is_held(const FacetExchange<dim> &exchange, const PointSet<dim> &points, Contact<dim> &contact)
+{
+  if (points.body < 0)
+    return false;
+  contact.point_body = points.body;
+  contact.point_node = exchange.local_node(points.surface_node[contact.point]);
+  return !anything_moves(contact, exchange.surface());
+}
+
+/// Can the point be inside this body, and be told so? Not if it is a surface node of it, or held
+/// like the body.
+template <int dim>
+bool
+may_be_inside(const FacetExchange<dim> &exchange,
+              const PointSet<dim>      &points,
+              const unsigned int        i,
+              const unsigned int        body)
+{
+  const auto &surface = exchange.surface();
+  return surface.bodies[body].kind == SurfaceKind::closed &&
+         (points.body < 0 ||
+          (surface.bodies[points.body].part != surface.bodies[body].part &&
+           (surface.bodies[body].movable ||
+            surface.can_move(points.body, exchange.local_node(points.surface_node[i])))));
+}
+
 /// Points within R of a facet, or behind it.
 template <int dim>
 void
-overlaps_near(const Surface<dim>               &surface,
+overlaps_near(const FacetExchange<dim>         &exchange,
               const std::vector<PointSet<dim>> &points,
               std::vector<Overlap<dim>>        &result)
 {
+  const auto       &surface = exchange.surface();
   GlobalSearch<dim> search;
   search.rebuild(surface, points, 0.);
   LocalSearch<dim> local_search;
@@ -89,8 +119,8 @@ overlaps_near(const Surface<dim>               &surface,
   std::vector<Contact<dim>> contacts;
   for (unsigned int s = 0; s < points.size(); ++s)
     local_search.find(points[s], s, search.candidates(s), {}, contacts);
-  for (const auto &c : contacts)
-    if (c.gap < (1 - 1e-6) * c.distance)
+  for (auto &c : contacts)
+    if (c.gap < (1 - 1e-6) * c.distance && !is_held(exchange, points[c.set], c))
       result.push_back({c.set,
                         c.point,
                         points[c.set].id(c.point),
@@ -103,10 +133,11 @@ overlaps_near(const Surface<dim>               &surface,
 /// Points inside a body without holes that are not in the list yet.
 template <int dim>
 void
-overlaps_inside(const Surface<dim>               &surface,
+overlaps_inside(const FacetExchange<dim>         &exchange,
                 const std::vector<PointSet<dim>> &points,
                 std::vector<Overlap<dim>>        &result)
 {
+  const auto      &surface    = exchange.surface();
   const auto       watertight = find_watertight(surface);
   std::vector<Box> boxes;
   Box              all;
@@ -148,8 +179,7 @@ overlaps_inside(const Surface<dim>               &surface,
         for (const unsigned int f : found)
           meetings[surface.facets[f].body] += n_meetings(surface, surface.facets[f], p);
         for (unsigned int b = 0; b < meetings.size(); ++b)
-          if (meetings[b] % 2 == 1 && watertight[b] &&
-              surface.bodies[b].kind == SurfaceKind::closed &&
+          if (meetings[b] % 2 == 1 && watertight[b] && may_be_inside(exchange, points[s], i, b) &&
               !std::binary_search(known.begin(), known.end(), std::make_pair(s, points[s].id(i))))
             result.push_back({s,
                               i,
@@ -172,13 +202,13 @@ initial_overlaps(const Surface<dim>               &owned,
   std::vector<Box>   everywhere(1);
   everywhere[0].lower.fill(std::numeric_limits<double>::lowest());
   everywhere[0].upper.fill(std::numeric_limits<double>::max());
-  exchange.rebuild(owned, everywhere);
+  exchange.rebuild(owned, everywhere, points);
 
   std::vector<Overlap<dim>> result;
   if (!exchange.surface().facets.empty())
     {
-      overlaps_near(exchange.surface(), points, result);
-      overlaps_inside(exchange.surface(), points, result);
+      overlaps_near(exchange, points, result);
+      overlaps_inside(exchange, points, result);
     }
   return result;
 }

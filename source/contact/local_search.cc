@@ -196,6 +196,8 @@ LocalSearch<dim>::find_on_surface(const PointSet<dim>       &points,
         else
           {
             minima_of_body(points.point(point), begin, next);
+            if (points.body == static_cast<int>(b))
+              keep_outer_minima();
             // Near a sheet only where another joins it: the side is that other one's affair.
             if (minima.empty())
               forget(point, b);
@@ -234,6 +236,16 @@ LocalSearch<dim>::minima_of_body(const dealii::Point<dim> &x_p,
       const int    side  = (along > tiny ? 1 : (along < -tiny ? -1 : 0));
       minima.push_back({static_cast<unsigned int>(i), pseudonormal, side});
     }
+}
+
+template <int dim>
+void
+LocalSearch<dim>::keep_outer_minima()
+{
+  minima.erase(std::remove_if(minima.begin(),
+                              minima.end(),
+                              [](const Minimum &m) { return m.side < 0; }),
+               minima.end());
 }
 
 template <int dim>

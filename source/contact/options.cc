@@ -56,6 +56,10 @@ ContactOptions::declare(Declaration &section)
       50,
       "Sweeps there and back of the position correction after which it goes on in the next step",
       1);
+  section.flag("Structure contact",
+               true,
+               "Structures meet each other, and themselves where Self contact says so; false: they "
+               "pass through each other");
   section.quantity("Tolerance",
                    "1e-4",
                    "1",
@@ -114,6 +118,7 @@ ContactOptions::ContactOptions(const Parameters &section)
   skin               = section.quantity("Skin");
   if (section.choice("Initial overlap") == "project")
     initial_overlap = InitialOverlap::project;
+  structure_contact = section.flag("Structure contact");
   if (law == Law::blended)
     alpha = section.quantity("Blend");
   if (law == Law::split)

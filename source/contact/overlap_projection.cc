@@ -137,7 +137,7 @@ project_overlaps(const Surface<dim>               &owned,
   std::vector<Box>   everywhere(1);
   everywhere[0].lower.fill(std::numeric_limits<double>::lowest());
   everywhere[0].upper.fill(std::numeric_limits<double>::max());
-  exchange.rebuild(owned, everywhere);
+  exchange.rebuild(owned, everywhere, points);
 
   std::vector<Projection<dim>> result;
   Movers<dim>                  movers;

@@ -32,6 +32,23 @@ RowBuilder<dim>::add(const unsigned int unknown, const double weight)
 
 template <int dim>
 void
+RowBuilder<dim>::add_node(const Surface<dim> &surface,
+                          const unsigned int  index,
+                          const double        weight)
+{
+  unsigned int &number = local_number(node_place, index);
+  if (number == none)
+    {
+      const auto &node = surface.nodes[index];
+      number           = all.size();
+      sources.push_back({true, index});
+      all.push_back({node.velocity, node.inverse_mass, node.key, node.owner});
+    }
+  add(number, weight);
+}
+
+template <int dim>
+void
 RowBuilder<dim>::add_facet_side(const Contact<dim> &contact, const Surface<dim> &surface)
 {
   const auto &facet = surface.facets[contact.facet];
@@ -39,19 +56,10 @@ RowBuilder<dim>::add_facet_side(const Contact<dim> &contact, const Surface<dim> 
   if (rigid < 0)
     for (unsigned int k = 0; k < facet.nodes.size(); ++k)
       if (contact.weights[k] != 0)
-        {
-          const auto   &node   = surface.nodes[facet.nodes[k]];
-          unsigned int &number = local_number(node_place, facet.nodes[k]);
-          if (number == none)
-            {
-              number = all.size();
-              sources.push_back({true, facet.nodes[k]});
-              all.push_back({node.velocity, node.inverse_mass, node.key, node.owner});
-            }
-          add(number, contact.weights[k]);
-        }
+        add_node(surface, facet.nodes[k], contact.weights[k]);
   list.begin.push_back(list.entries.size());
-  list.rigid_body.push_back({{-1, rigid}});
+  list.rigid_body.push_back(
+    {{contact.point_body < 0 ? -1 : surface.bodies[contact.point_body].rigid_body, rigid}});
 }
 
 template class RowBuilder<2>;

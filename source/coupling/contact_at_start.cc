@@ -62,6 +62,7 @@ ContactCoupling<dim>::resolve_initial_overlaps(const Parameters         &root,
                                                MaterialPointSystem<dim> &points,
                                                StructureSystem<dim>     &structure)
 {
+  surface_nodes.refuse_initial_overlaps(root, structure);
   std::uint64_t n_particles = 0;
   auto          overlaps    = find_overlaps(points, structure, n_particles);
   Projected     result;

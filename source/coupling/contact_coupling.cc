@@ -15,15 +15,20 @@ constexpr unsigned int  field_shift    = 48;
 } // namespace
 
 template <int dim>
-ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm)
-  : initial_overlap(options.initial_overlap), comm(comm), system(options, comm)
+ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options,
+                                      StructureSystem<dim>          &structure,
+                                      MPI_Comm                       comm)
+  : initial_overlap(options.initial_overlap)
+  , comm(comm)
+  , system(options, comm)
+  , surface_nodes(options.structure_contact, structure, comm)
 {}
 
 template <int dim>
 void
 ContactCoupling<dim>::make_point_sets(MaterialPointSystem<dim> &points, const bool renumbered)
 {
-  sets.resize(points.bodies.size());
+  sets.resize(points.bodies.size() + surface_nodes.n_sets());
   ids.resize(points.bodies.size());
   radii.resize(points.bodies.size());
   unsigned int s = 0;
@@ -69,7 +74,9 @@ ContactCoupling<dim>::find(MaterialPointSystem<dim> &points,
   make_point_sets(points, renumbered);
   if (renumbered)
     system.points_renumbered();
-  system.find(structure.publish_surface(), sets, dt);
+  const auto &surface = structure.publish_surface();
+  surface_nodes.fill(surface, sets.begin() + points.bodies.size());
+  system.find(surface, sets, dt);
 }
 
 template <int dim>
@@ -135,9 +142,10 @@ ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
   system.solve(structure.rigid_unknowns(), dt);
   if (system.report().n_contacts == 0)
     return;
-  received.resize(sets.size());
+  received.resize(points.bodies.size());
   for (unsigned int c = 0; c < system.contacts().size(); ++c)
-    received[system.contacts()[c].set] += system.impulses().impulse[c];
+    if (system.contacts()[c].set < received.size())
+      received[system.contacts()[c].set] += system.impulses().impulse[c];
 
   system.point_impulses([&](const unsigned int number, const auto &p, const auto &c) {
     fields[number / n_nodes]->add_impulse(number % n_nodes, p, c);
@@ -163,7 +171,9 @@ ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &points, StructureSys
         sets[s].position[d] = body.points.column(Layout<dim>::next_position + d);
       ++s;
     }
-  penetrations += system.audit(structure.publish_surface(), sets);
+  const auto &surface = structure.publish_surface();
+  surface_nodes.fill(surface, sets.begin() + s);
+  penetrations += system.audit(surface, sets);
 }
 
 template class ContactCoupling<2>;

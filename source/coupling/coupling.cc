@@ -62,7 +62,8 @@ Coupling<dim>::declare(Declaration &root)
   SolidBody<dim>::declare(body.when("Kind", "solid"));
   RigidBody<dim>::declare(body.when("Kind", "rigid"));
   contact::ContactOptions::declare(
-    root.section("Contact", "Between material points and the surfaces of structures."));
+    root.section("Contact",
+                 "Between material points and the surfaces of structures, and among structures."));
 }
 
 template <int dim>
@@ -71,7 +72,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
   , materials(root)
   , structure(root, materials, options.gravity, comm)
   , points(root, materials, options.gravity, structure.n_sheets(), comm)
-  , contacts(contact::ContactOptions(root.section("Contact")), comm)
+  , contacts(contact::ContactOptions(root.section("Contact")), structure, comm)
   , comm(comm)
 {
   projected = contacts.resolve_initial_overlaps(root, points, structure);

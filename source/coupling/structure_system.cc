@@ -48,6 +48,7 @@ StructureSystem<dim>::describe_surfaces(const StructuralBody<dim> &body,
   description.thickness       = body.thickness();
   description.friction        = body.friction();
   description.rigid_body      = rigid_body;
+  description.part            = index;
   const unsigned int n_sheets = body.mesh().n_sheets();
   for (unsigned int i = 0; i < std::max(1u, n_sheets); ++i)
     {
@@ -72,6 +73,12 @@ StructureSystem<dim>::make_surface()
     constexpr bool     is_rigid      = std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>;
     const unsigned int first_surface = surface.bodies.size();
     describe_surfaces(body, index, is_rigid ? n_rigid++ : -1);
+    for (unsigned int s = first_surface; s < surface.bodies.size(); ++s)
+      if constexpr (is_rigid)
+        surface.bodies[s].movable =
+          body.body_inverse_mass().norm() > 0 || body.inverse_inertia().norm() > 0;
+      else
+        surface.bodies[s].self_contact = body.self_contact();
     received.emplace_back();
 
     first_node.push_back(surface.nodes.size());
@@ -83,6 +90,11 @@ StructureSystem<dim>::make_surface()
         surface.nodes.back().key   = first_key + body.key(node);
         surface.nodes.back().owner = body.owner(node);
       }
+    hanging.resize(surface.nodes.size());
+    if constexpr (!is_rigid)
+      for (const HangingNode &node : body.mesh().hanging_nodes)
+        if (const auto found = place.find(node.node); found != place.end())
+          hanging[found->second] = true;
     std::uint64_t largest_key = 0;
     for (const auto &facet : body.facets())
       {

@@ -29,6 +29,10 @@ SolidBody<dim>::declare(Declaration &section)
               "about full integration and best for elastic bending",
               0.,
               1.);
+  section.flag("Self contact",
+               false,
+               "May the body's surface touch itself? Its nodes then meet its own facets at the "
+               "distance Thickness");
   BoundaryConditions<dim>::declare(section);
   Loads<dim>::declare(section);
   Declaration &damping = section.section("Damping", "Force -alpha m v, to find states of rest");
@@ -44,6 +48,7 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
                           MPI_Comm               comm)
   : StructuralBody<dim>(body,
                         std::make_unique<const StructureMesh<dim>>(body.section("Mesh"), comm))
+  , touches_itself(body.flag("Self contact"))
   , elements(mesh(),
              materials.get(body.text("Material"), body),
              body.choice("Integration") == "full" ? Integration::full : Integration::one_point,

@@ -39,5 +39,20 @@ struct Contact
   double distance;
   /// Coulomb friction coefficient [1].
   double friction;
+  /// Where the point is a surface node: its body, or -1, and its index into Surface::nodes.
+  int          point_body = -1;
+  unsigned int point_node = 0;
 };
+
+/// Can the contact of a surface node move either side? If not, it is none.
+template <int dim>
+bool
+anything_moves(const Contact<dim> &contact, const Surface<dim> &surface)
+{
+  const auto &facet  = surface.facets[contact.facet];
+  bool        result = surface.can_move(contact.point_body, contact.point_node);
+  for (unsigned int k = 0; k < facet.nodes.size(); ++k)
+    result |= contact.weights[k] != 0 && surface.can_move(facet.body, facet.nodes[k]);
+  return result;
+}
 } // namespace coracle::contact

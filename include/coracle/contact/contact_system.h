@@ -54,7 +54,9 @@ public:
   /**
    * Finds the contacts at the start of the step.
    * @param owned  facets that this rank owns, nodes at their places with their predicted velocities
-   * @param points all material points of this rank, a set for each body
+   * @param points all material points of this rank, a set for each body; and surface nodes of
+   * structures, a set for each body. Each node that may touch is a point on one rank, which has it
+   * in `owned`
    */
   void find(const Surface<dim> &owned, const std::vector<PointSet<dim>> &points, const double dt);
 
@@ -68,7 +70,7 @@ public:
   const Candidates &candidates(const unsigned int set) const { return search.candidates(set); }
 
   /**
-   * Rows of all contacts.
+   * Rows of all contacts; those of surface nodes' side need nothing of the caller.
    * @param point_row (set, point, entries): appends the point as a sum of weight times one of the
    * caller's unknowns, numbered densely from 0; an unknown may appear repeatedly
    * @param unknown   (number): velocity, inverse mass, key and owner of one of the caller's
@@ -140,7 +142,10 @@ private:
                    const std::vector<PointSet<dim>> &points,
                    const Extremes                   &extremes,
                    const double                      travel);
-  void     sum_up(const std::vector<RigidUnknown<dim>> &rigid);
+  /// What the local search cannot know of contacts of surface nodes, from the first of them on;
+  /// returns the end of those that anything can move.
+  std::size_t complete_node_contacts(const PointSet<dim> &points, const std::size_t first);
+  void        sum_up(const std::vector<RigidUnknown<dim>> &rigid);
 
   ContactOptions     options;
   MPI_Comm           communicator;

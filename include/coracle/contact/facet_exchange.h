@@ -2,7 +2,7 @@
 #pragma once
 
 #include <coracle/contact/box_tree.h>
-#include <coracle/contact/surface.h>
+#include <coracle/contact/point_set.h>
 
 #include <mpi.h>
 
@@ -28,14 +28,20 @@ public:
    * within reach of others.
    * @param owned  each facet of the bodies on exactly one rank, with its nodes
    * @param reach  boxes around this rank's points, enlarged by all but half the thickness
+   * @param points those that are surface nodes come into surface() too
    */
-  void rebuild(const Surface<dim> &owned, const std::vector<Box> &reach);
+  void rebuild(const Surface<dim>               &owned,
+               const std::vector<Box>           &reach,
+               const std::vector<PointSet<dim>> &points);
 
   /// Collective. Positions, velocities and inverse masses of the nodes anew.
   void update(const Surface<dim> &owned);
 
   /// The facets within reach.
   const Surface<dim> &surface() const { return local; }
+
+  /// Index in surface().nodes of an owned node that is a point.
+  unsigned int local_node(const unsigned int owned_node) const { return local_nodes[owned_node]; }
 
   /// Collective. Adds `values`, one per node of surface(), to the nodes they came from.
   void add_to_owners(const std::vector<dealii::Tensor<1, dim>> &values,
@@ -66,6 +72,7 @@ private:
 
   MPI_Comm                     communicator;
   Surface<dim>                 local;
+  std::vector<unsigned int>    local_nodes;
   mutable std::vector<Partner> sent, received;
 };
 } // namespace coracle::contact

@@ -23,6 +23,12 @@ namespace coracle::contact
  * the point belongs to, which is fixed when the point comes near and forgotten
  * when it is gone or goes round the sheet's rim.
  *
+ * Self contact: a node lies on its own surface, and facets it belongs to are no
+ * candidates. What it sees from within is the far side of its own wall; only
+ * minima seen from outside count. So a node must not get behind another part of
+ * its own body: the contact distance must be wider than what a step's second
+ * order effects can close.
+ *
  * The other methods (LocalMethod) take each pair of point and facet for itself and
  * know no sides; see local_search_per_facet.cc. They are there to compare with.
  *
@@ -96,6 +102,8 @@ private:
   void measure_pairs(const PointSet<dim> &points, const double travel);
   void
   minima_of_body(const dealii::Point<dim> &x_p, const std::size_t begin, const std::size_t end);
+  /// For a node of the body itself: what it sees from within is its own far wall and no contact.
+  void keep_outer_minima();
   /// Side that the point belongs to, for a sheet kept up to date in its column; 0 where it may be
   /// either.
   int own_side(const PointSet<dim> &points, const unsigned int point, const Minimum &nearest) const;

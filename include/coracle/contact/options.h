@@ -58,6 +58,9 @@ struct ContactOptions
   double         skin            = 1;
   InitialOverlap initial_overlap = InitialOverlap::refuse;
 
+  /// Do the surfaces of structures meet each other?
+  bool structure_contact = true;
+
   static void declare(Declaration &section);
 
   ContactOptions() = default;

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <deal.II/base/point.h>
-#include <deal.II/base/tensor.h>
+#include <coracle/contact/surface.h>
 
-#include <array>
-#include <cstdint>
-#include <vector>
+#include <algorithm>
 
 namespace coracle::contact
 {
 /**
- * What contact sees of one body of material points: a view of the caller's
- * columns, no copies. Valid until the caller moves or resizes the columns.
+ * What contact sees of one body of material points, or of the surface nodes of
+ * one structural body: a view of the caller's columns, no copies. Valid until the caller moves or
+ * resizes the columns.
  *
  * A point's place in the columns is its index; contact lists candidates by
  * index, so that the caller must say when points were renumbered
@@ -55,6 +53,31 @@ struct PointSet
    * the point; contact reads and writes it.
    */
   std::vector<double *> side;
+
+  /// Points that are surface nodes of a structural body: its index (its first, where it has
+  /// several) in Surface::bodies; else -1.
+  int body = -1;
+  /// Of each of these points, its index in the nodes of the owned surface. Ids are the nodes' keys.
+  const unsigned int *surface_node = nullptr;
+  /// Candidates reach at least this much farther than needed [m]: radii of nodes are small.
+  double least_skin = 0;
+
+  /**
+   * May this point touch this facet? Nodes touch no facet that they belong to, facets of
+   * their own body only where that is asked for, and none where neither body can move.
+   */
+  bool may_touch(const unsigned int i, const Surface<dim> &surface, const Facet<dim> &facet) const
+  {
+    if (body < 0)
+      return true;
+    const auto &own = surface.bodies[body], &other = surface.bodies[facet.body];
+    if (own.part != other.part)
+      return own.movable || other.movable;
+    return own.self_contact &&
+           std::none_of(facet.nodes.begin(), facet.nodes.end(), [&](const unsigned int node) {
+             return surface.nodes[node].key == ids[i];
+           });
+  }
 
   bool is_hole(const unsigned int i) const { return mass != nullptr && mass[i] == 0; }
 

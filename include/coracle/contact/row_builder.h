@@ -9,7 +9,8 @@ namespace coracle::contact
 /**
  * Rows of contacts: numbers the unknowns that contacts act on, those of the
  * caller (grid nodes) and the surface's nodes, in the order in which they are
- * met. The keys of the two kinds must differ.
+ * met. The keys of the two kinds must differ. Points that are surface nodes need
+ * nothing of the caller: a node is the same unknown on either side.
  */
 template <int dim>
 class RowBuilder
@@ -33,7 +34,10 @@ public:
     for (const auto &contact : contacts)
       {
         entries.clear();
-        point_row(contact.set, contact.point, entries);
+        if (contact.point_body < 0)
+          point_row(contact.set, contact.point, entries);
+        else if (surface.bodies[contact.point_body].rigid_body < 0)
+          add_node(surface, contact.point_node, 1.);
         for (const auto &entry : entries)
           {
             unsigned int &number = local_number(place, entry.unknown);
@@ -66,6 +70,8 @@ private:
 
   /// One more entry of the present side, or more weight on one that it has.
   void add(const unsigned int unknown, const double weight);
+  /// The same for a node of the surface.
+  void add_node(const Surface<dim> &surface, const unsigned int index, const double weight);
   void add_facet_side(const Contact<dim> &contact, const Surface<dim> &surface);
 
   static constexpr unsigned int none = -1;

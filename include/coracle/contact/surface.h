@@ -33,6 +33,12 @@ struct SurfaceBody
   int rigid_body = -1;
   /// Index of this sheet's column in PointSet::side; not used by closed bodies.
   int sheet = -1;
+  /// The structural body it belongs to: sheets that are joined have one.
+  unsigned int part = 0;
+  /// May contact move it at all? Not a rigid body whose motion is wholly prescribed.
+  bool movable = true;
+  /// Do the body's own surface nodes touch its facets?
+  bool self_contact = false;
 };
 
 /// A node of the surface. Several ranks may hold copies; `key` tells that they are the same.
@@ -64,7 +70,8 @@ struct Facet
   std::uint64_t key = 0;
 };
 
-/// All facets that this rank's points can reach before the next rebuild, with their nodes.
+/// All facets that this rank's points can reach before the next rebuild, with their nodes; and
+/// the nodes that are points of this rank, also those without a facet.
 template <int dim>
 struct Surface
 {
@@ -72,5 +79,12 @@ struct Surface
   std::vector<SurfaceBody>      bodies;
   std::vector<SurfaceNode<dim>> nodes;
   std::vector<Facet<dim>>       facets;
+
+  /// Can contact move this node of this body?
+  bool can_move(const unsigned int body, const unsigned int node) const
+  {
+    return bodies[body].rigid_body >= 0 ? bodies[body].movable
+                                        : nodes[node].inverse_mass.norm_square() > 0;
+  }
 };
 } // namespace coracle::contact

@@ -4,12 +4,12 @@
 #include <coracle/contact/contact_system.h>
 #include <coracle/contact/initial_overlaps.h>
 #include <coracle/coupling/material_point_system.h>
-#include <coracle/coupling/structure_system.h>
+#include <coracle/coupling/structure_points.h>
 
 namespace coracle
 {
 /**
- * Contact between material points and structures: translates the bodies of
+ * Contact between material points and structures, and among structures: translates the bodies of
  * both sides into points, facets and rows of unknowns, and impulses back.
  *
  * A particle is a point whose velocity is the grid's at its place, because that
@@ -20,7 +20,9 @@ template <int dim>
 class ContactCoupling
 {
 public:
-  ContactCoupling(const contact::ContactOptions &options, MPI_Comm comm);
+  ContactCoupling(const contact::ContactOptions &options,
+                  StructureSystem<dim>          &structure,
+                  MPI_Comm                       comm);
 
   /// Contacts at the start of the step. Collective.
   void find(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
@@ -74,9 +76,11 @@ private:
                      const unsigned int              row,
                      const Action                   &action) const;
 
-  const contact::InitialOverlap           initial_overlap;
-  MPI_Comm                                comm;
-  contact::ContactSystem<dim>             system;
+  const contact::InitialOverlap initial_overlap;
+  MPI_Comm                      comm;
+  contact::ContactSystem<dim>   system;
+  StructurePoints<dim>          surface_nodes;
+  /// Material point bodies, then bodies with surface nodes as points.
   std::vector<contact::PointSet<dim>>     sets;
   std::vector<std::vector<std::uint64_t>> ids;
   std::vector<std::vector<double>>        radii;

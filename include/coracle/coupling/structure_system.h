@@ -5,6 +5,7 @@
 #include <coracle/structure/rigid_body.h>
 #include <coracle/structure/solid_body.h>
 
+#include <algorithm>
 #include <list>
 #include <optional>
 
@@ -72,6 +73,20 @@ public:
   /// Surfaces with particles on both sides, of all bodies together; each has a column of sides.
   unsigned int n_sheets() const { return sheets; }
 
+  unsigned int n_bodies() const { return first_node.size(); }
+  /// First surface of a body, and first of its nodes on the published surface: they are in order.
+  unsigned int first_surface(const unsigned int body) const
+  {
+    return std::lower_bound(body_of_surface.begin(), body_of_surface.end(), body) -
+           body_of_surface.begin();
+  }
+  unsigned int begin_nodes(const unsigned int body) const
+  {
+    return body < first_node.size() ? first_node[body] : surface.nodes.size();
+  }
+  /// Of a deformable body, and on an edge or face of a larger neighbour.
+  bool is_hanging(const unsigned int surface_node) const { return hanging[surface_node]; }
+
   bool empty() const { return solids.empty() && rigids.empty(); }
 
   std::list<SolidBody<dim>> solids;
@@ -91,6 +106,7 @@ private:
   contact::Surface<dim>               surface;
   std::vector<unsigned int>           first_node, body_of_surface;
   unsigned int                        sheets = 0;
+  std::vector<bool>                   hanging;
   std::vector<dealii::Tensor<1, dim>> received;
 };
 } // namespace coracle

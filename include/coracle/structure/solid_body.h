@@ -73,6 +73,9 @@ public:
     return static_cast<const StructureMesh<dim> &>(*this->body_mesh);
   }
 
+  /// May the body's surface touch itself?
+  bool self_contact() const { return touches_itself; }
+
   unsigned int n_points_per_element() const { return elements.n_points(); }
   /// Mean over the points of an element of mesh().elements [Pa].
   Symmetric<dim, double> stress(const unsigned int element) const
@@ -92,6 +95,7 @@ private:
   /// Ghosts as their owners, then hanging nodes as the mean of their parents.
   void distribute(const unsigned int first_column);
 
+  const bool              touches_itself;
   Elements<dim>           elements;
   BoundaryConditions<dim> boundary_conditions;
   Loads<dim>              loads;

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/contact/initial_overlaps.h>
+#include <coracle/contact/messages.h>
+#include <coracle/coupling/structure_points.h>
+
+#include <limits>
+#include <sstream>
+#include <unordered_map>
+
+namespace coracle
+{
+namespace
+{
+/// Radius of nodes of bodies without a thickness, and how much farther candidates of nodes reach
+/// at least, in smallest edges.
+constexpr double smallest_radius = 0.01, least_skin = 0.25;
+
+/// Is there a body that another one or itself may touch?
+bool
+anything_to_meet(const std::vector<contact::SurfaceBody> &surfaces)
+{
+  bool movable = false, self = false;
+  for (const auto &surface : surfaces)
+    {
+      movable = movable || surface.movable;
+      self    = self || surface.self_contact;
+    }
+  return self || (movable && surfaces.back().part > 0);
+}
+
+template <int dim>
+double
+smallest_edge_of(const contact::Surface<dim> &surface)
+{
+  double square = std::numeric_limits<double>::infinity();
+  for (const auto &facet : surface.facets)
+    for (unsigned int k = 0; k < facet.nodes.size(); ++k)
+      {
+        const unsigned int a = facet.nodes[k], b = facet.nodes[(k + 1) % facet.nodes.size()];
+        if (a != b)
+          square =
+            std::min(square, surface.nodes[a].position.distance_square(surface.nodes[b].position));
+      }
+  return std::sqrt(square);
+}
+
+/// Each node that ranks have is given to one of them: its owner, or the lowest that has it.
+template <int dim>
+std::vector<bool>
+assign_nodes(const contact::Surface<dim> &surface, MPI_Comm comm)
+{
+  const int                               n = contact::n_ranks(comm), me = contact::my_rank(comm);
+  std::vector<std::vector<std::uint64_t>> keys(n);
+  std::vector<std::vector<unsigned int>>  asked(n);
+  for (unsigned int i = 0; i < surface.nodes.size(); ++i)
+    {
+      keys[surface.nodes[i].owner].push_back(surface.nodes[i].key);
+      asked[surface.nodes[i].owner].push_back(i);
+    }
+  const auto                             claims = contact::all_to_all(keys, comm);
+  std::unordered_map<std::uint64_t, int> home;
+  for (const auto key : claims[me])
+    home.emplace(key, me);
+  for (int r = 0; r < n; ++r)
+    for (const auto key : claims[r])
+      home.emplace(key, r);
+  std::vector<std::vector<char>> answers(n);
+  for (int r = 0; r < n; ++r)
+    for (const auto key : claims[r])
+      answers[r].push_back(home.at(key) == r);
+
+  std::vector<bool> result(surface.nodes.size());
+  const auto        mine = contact::all_to_all(answers, comm);
+  for (int r = 0; r < n; ++r)
+    for (unsigned int i = 0; i < asked[r].size(); ++i)
+      result[asked[r][i]] = mine[r][i];
+  return result;
+}
+} // namespace
+
+template <int dim>
+StructurePoints<dim>::StructurePoints(const bool            wanted,
+                                      StructureSystem<dim> &structure,
+                                      MPI_Comm              comm)
+  : comm(comm)
+{
+  const auto &surface = structure.publish_surface();
+  if (!wanted || surface.bodies.empty() || !anything_to_meet(surface.bodies))
+    return;
+  smallest_edge = mpi::min(smallest_edge_of(surface), comm);
+  make_parts(structure, surface, assign_nodes(surface, comm));
+}
+
+template <int dim>
+void
+StructurePoints<dim>::make_parts(const StructureSystem<dim>  &structure,
+                                 const contact::Surface<dim> &surface,
+                                 const std::vector<bool>     &is_mine)
+{
+  for (unsigned int b = 0; b < structure.n_bodies(); ++b)
+    {
+      parts.emplace_back();
+      Part        &part      = parts.back();
+      const double thickness = surface.bodies[structure.first_surface(b)].thickness;
+      part.body              = structure.first_surface(b);
+      part.radius            = thickness > 0 ? 0.5 * thickness : smallest_radius * smallest_edge;
+      for (unsigned int i = structure.begin_nodes(b); i < structure.begin_nodes(b + 1); ++i)
+        if (is_mine[i] && !structure.is_hanging(i))
+          {
+            part.nodes.push_back(i);
+            part.keys.push_back(surface.nodes[i].key);
+          }
+      for (int d = 0; d < dim; ++d)
+        {
+          part.position[d].resize(part.nodes.size());
+          part.velocity[d].resize(part.nodes.size());
+        }
+      part.side.assign(structure.n_sheets(), std::vector<double>(part.nodes.size()));
+    }
+}
+
+template <int dim>
+void
+StructurePoints<dim>::fill(const contact::Surface<dim>                           &surface,
+                           typename std::vector<contact::PointSet<dim>>::iterator set)
+{
+  for (auto &part : parts)
+    {
+      for (unsigned int i = 0; i < part.nodes.size(); ++i)
+        for (int d = 0; d < dim; ++d)
+          {
+            part.position[d][i] = surface.nodes[part.nodes[i]].position[d];
+            part.velocity[d][i] = surface.nodes[part.nodes[i]].velocity[d];
+          }
+      set->n_points        = part.nodes.size();
+      set->ids             = part.keys.data();
+      set->constant_radius = part.radius;
+      set->body            = part.body;
+      set->surface_node    = part.nodes.data();
+      set->least_skin      = least_skin * smallest_edge;
+      set->side.clear();
+      for (auto &column : part.side)
+        set->side.push_back(column.data());
+      for (int d = 0; d < dim; ++d)
+        {
+          set->position[d] = part.position[d].data();
+          set->velocity[d] = part.velocity[d].data();
+        }
+      ++set;
+    }
+}
+
+template <int dim>
+void
+StructurePoints<dim>::refuse_initial_overlaps(const Parameters     &root,
+                                              StructureSystem<dim> &structure)
+{
+  if (parts.empty())
+    return;
+  const auto                         &surface = structure.publish_surface();
+  std::vector<contact::PointSet<dim>> sets(parts.size());
+  fill(surface, sets.begin());
+  const auto          mine = contact::initial_overlaps(surface, sets, comm);
+  const std::uint64_t n    = mpi::sum<std::uint64_t>(mine.size(), comm);
+  if (n == 0)
+    return;
+
+  // All ranks must name the same one.
+  std::array<double, 3 + dim> deepest{};
+  for (const auto &overlap : mine)
+    if (overlap.depth > deepest[0])
+      {
+        deepest[0] = overlap.depth;
+        deepest[1] = sets[overlap.set].body;
+        deepest[2] = overlap.body;
+        for (int d = 0; d < dim; ++d)
+          deepest[3 + d] = overlap.place[d];
+      }
+  for (const auto &other : dealii::Utilities::MPI::all_gather(comm, deepest))
+    if (other[0] > deepest[0] || (other[0] == deepest[0] && other < deepest))
+      deepest = other;
+
+  const std::string  body = structure.body_name(deepest[1]), met = structure.body_name(deepest[2]);
+  std::ostringstream found, cure;
+  found << n << (n == 1 ? " surface node is" : " surface nodes are")
+        << " in or too near to another surface; the deepest is one of '" << body << "' at (";
+  for (int d = 0; d < dim; ++d)
+    found << (d > 0 ? ", " : "") << deepest[3 + d];
+  found << ") m, ";
+  if (std::isfinite(deepest[0]))
+    found << deepest[0] << " m nearer to '" << met << "' than the contact distance";
+  else
+    found << "deep inside '" << met << "'";
+  if (body == met)
+    cure << "leave more room between its surfaces, or make Thickness smaller";
+  else if (std::isfinite(deepest[0]))
+    cure << "move '" << body << "' and '" << met << "' apart by " << deepest[0]
+         << " m, or make Thickness smaller";
+  else
+    cure << "move '" << body << "' out of '" << met << "'";
+  cure << "; Contact/Structure contact = false lets structures pass through each other";
+  throw root.section("Bodies").section(body).error("",
+                                                   "structures start too near to each other",
+                                                   found.str(),
+                                                   cure.str());
+}
+
+template class StructurePoints<2>;
+template class StructurePoints<3>;
+} // namespace coracle

@@ -29,6 +29,21 @@ anything_to_meet(const std::vector<contact::SurfaceBody> &surfaces)
   return self || (movable && surfaces.back().part > 0);
 }
 
+/// Local searches that look at each facet for itself take neighbours for contacts.
+void
+refuse_self_contact_per_facet(const Parameters                        &root,
+                              const std::vector<contact::SurfaceBody> &surfaces)
+{
+  const Parameters  section = root.section("Contact");
+  const std::string search  = section.choice("Local search");
+  for (const auto &surface : surfaces)
+    if (surface.self_contact && search != "nearest on surface")
+      throw section.error("Local search",
+                          "self contact by a search that does not know the whole surface",
+                          search,
+                          "set Local search = nearest on surface, or leave out Self contact");
+}
+
 template <int dim>
 double
 smallest_edge_of(const contact::Surface<dim> &surface)
@@ -158,7 +173,8 @@ StructurePoints<dim>::refuse_initial_overlaps(const Parameters     &root,
 {
   if (parts.empty())
     return;
-  const auto                         &surface = structure.publish_surface();
+  const auto &surface = structure.publish_surface();
+  refuse_self_contact_per_facet(root, surface.bodies);
   std::vector<contact::PointSet<dim>> sets(parts.size());
   fill(surface, sets.begin());
   const auto          mine = contact::initial_overlaps(surface, sets, comm);

@@ -33,6 +33,25 @@ read_local_search(const std::string &name)
 void
 ContactOptions::declare(Declaration &section)
 {
+  section.choice("Method",
+                 "surface",
+                 {"surface", "grid"},
+                 "Where particles and structures meet. surface: particles and facets, nothing "
+                 "passes; grid: on the nodes of the background grid (Chen et al. 2015, section "
+                 "2.4), for comparison: particles pass where elements are larger than cells, and "
+                 "structures do not meet each other");
+  section.choice("Between fields",
+                 "none",
+                 {"none", "grid"},
+                 "Whether material point bodies of different velocity fields meet. none: they do "
+                 "not feel each other; grid: on the nodes of the background grid, with slip");
+  section.when("Between fields", "grid")
+    .quantity("Friction between fields",
+              "0",
+              "1",
+              "mu",
+              "Coulomb coefficient between material point bodies of different velocity fields",
+              0);
   section.quantity(
     "Friction", "0", "1", "mu", "Coulomb coefficient of surfaces that do not give their own", 0);
   section.choice(
@@ -108,7 +127,11 @@ ContactOptions::declare(Declaration &section)
 
 ContactOptions::ContactOptions(const Parameters &section)
 {
-  friction           = section.quantity("Friction");
+  friction       = section.quantity("Friction");
+  method         = (section.choice("Method") == "grid" ? Method::grid : Method::surface);
+  between_fields = (section.choice("Between fields") == "grid");
+  if (between_fields)
+    friction_between_fields = section.quantity("Friction between fields");
   search             = read_search(section.choice("Search"));
   local_search       = read_local_search(section.choice("Local search"));
   law                = read_law(section.choice("Law"));

@@ -16,12 +16,21 @@ constexpr unsigned int  field_shift    = 48;
 
 template <int dim>
 ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options,
+                                      MaterialPointSystem<dim>      &points,
                                       StructureSystem<dim>          &structure,
                                       MPI_Comm                       comm)
   : initial_overlap(options.initial_overlap)
   , comm(comm)
+  , method(options.method)
+  , on_grid({options.method == contact::Method::grid,
+             options.between_fields,
+             options.friction_between_fields},
+            points,
+            structure,
+            comm)
   , system(options, comm)
-  , surface_nodes(options.structure_contact, structure, comm)
+  // On the grid, structures meet particles only.
+  , surface_nodes(options.structure_contact && method == contact::Method::surface, structure, comm)
 {}
 
 template <int dim>
@@ -114,6 +123,37 @@ void
 ContactCoupling<dim>::solve(MaterialPointSystem<dim> &points,
                             StructureSystem<dim>     &structure,
                             const double              dt)
+{
+  // Surfaces have the last word: nothing passes them.
+  if (on_grid.is_used())
+    solve_on_grid(points, structure);
+  if (method == contact::Method::surface)
+    solve_on_surface(points, structure, dt);
+  if (on_grid.is_used())
+    {
+      const unsigned long n_facets =
+        (method == contact::Method::surface ? system.report().n_contacts : 0);
+      report_with_grid            = system.report();
+      report_with_grid.n_contacts = on_grid.n_contacts() + n_facets;
+    }
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::solve_on_grid(MaterialPointSystem<dim> &points,
+                                    StructureSystem<dim>     &structure)
+{
+  on_grid.solve(points, structure);
+  received.resize(points.bodies.size());
+  for (unsigned int b = 0; b < received.size(); ++b)
+    received[b] += on_grid.received()[b];
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
+                                       StructureSystem<dim>     &structure,
+                                       const double              dt)
 {
   const unsigned int             n_nodes = points.octree.n_nodes();
   std::vector<NodalField<dim> *> fields;

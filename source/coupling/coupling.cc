@@ -72,7 +72,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
   , materials(root)
   , structure(root, materials, options.gravity, comm)
   , points(root, materials, options.gravity, structure.n_sheets(), comm)
-  , contacts(contact::ContactOptions(root.section("Contact")), structure, comm)
+  , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
   , comm(comm)
 {
   projected = contacts.resolve_initial_overlaps(root, points, structure);

@@ -225,6 +225,22 @@ StructureSystem<dim>::apply_contact(
   });
 }
 
+template <int dim>
+void
+StructureSystem<dim>::apply_node_impulses(
+  const std::vector<std::vector<dealii::Tensor<1, dim>>> &impulse)
+{
+  for_each_surface([&](auto &body, const unsigned int index) {
+    for (unsigned int node = 0; node < impulse[index].size(); ++node)
+      if (impulse[index][node].norm_square() > 0)
+        {
+          received[index] += impulse[index][node];
+          body.add_contact_impulse(node, impulse[index][node]);
+        }
+    body.apply_contact_impulses();
+  });
+}
+
 template class StructureSystem<2>;
 template class StructureSystem<3>;
 } // namespace coracle

@@ -109,6 +109,33 @@ generate_row(const Shape<dim>                                      &shape,
       particles.ids.push_back(lattice.id(index));
     }
 }
+
+/// The particles of a shape that brings its own places; false if it does not.
+template <int dim>
+bool
+generate_places(const Shape<dim>                                      &shape,
+                const GenerationSettings                              &settings,
+                const std::function<bool(const dealii::Point<dim> &)> &is_mine,
+                const MPI_Comm                                         communicator,
+                GeneratedParticles<dim>                               &particles)
+{
+  std::uint64_t id = 0;
+  if (!shape.for_each_place(settings.spacing, [&](const dealii::Point<dim> &place) {
+        if (is_mine(place))
+          {
+            particles.positions.push_back(place);
+            particles.ids.push_back(id);
+          }
+        ++id;
+      }))
+    return false;
+  particles.n_total =
+    dealii::Utilities::MPI::sum(std::uint64_t(particles.ids.size()), communicator);
+  particles.volume = shape.volume().value() / id;
+  for (int d = 0; d < dim; ++d)
+    particles.spacing[d] = std::pow(particles.volume, 1. / dim);
+  return true;
+}
 } // namespace
 
 template <int dim>
@@ -119,6 +146,9 @@ generate_particles(const Shape<dim>                                      &shape,
                    const dealii::BoundingBox<dim>                        &my_region,
                    const MPI_Comm                                         communicator)
 {
+  GeneratedParticles<dim> particles;
+  if (generate_places(shape, settings, is_mine, communicator, particles))
+    return particles;
   const Lattice<dim> lattice(shape.bounding_box(), settings.spacing);
 
   // One point more on either side: round-off must not take a point from the rank that owns it.
@@ -129,7 +159,6 @@ generate_particles(const Shape<dim>                                      &shape,
       end[d]   = lattice.first_from(d, my_region.upper_bound(d) + lattice.spacing[d]);
     }
 
-  GeneratedParticles<dim>      particles;
   typename Lattice<dim>::Index index = begin;
   for (index[dim - 1] = begin[dim - 1]; index[dim - 1] < end[dim - 1]; ++index[dim - 1])
     if constexpr (dim == 2)

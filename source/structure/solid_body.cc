@@ -2,6 +2,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/structure/solid_body.h>
 
+#include <numeric>
 #include <type_traits>
 #include <vector>
 
@@ -109,6 +110,14 @@ SolidBody<dim>::find_contact_nodes()
         contact_nodes.push_back(n);
         nodes[Node::impulse][n] = 0;
       }
+}
+
+template <int dim>
+void
+SolidBody<dim>::contact_through_volume()
+{
+  contact_nodes.resize(this->mesh().n_owned_nodes());
+  std::iota(contact_nodes.begin(), contact_nodes.end(), 0u);
 }
 
 template <int dim>

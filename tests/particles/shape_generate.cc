@@ -71,6 +71,33 @@ test(const std::string &title, const Shape<dim> &shape, const double spacing)
           << ", checksum " << sum / particles.n_total << std::endl;
 }
 
+/// Balls in shells: the outermost particles are half a spacing under the surface, all keep their
+/// distance, and the centre of mass is the centre.
+template <int dim>
+void
+test_shells()
+{
+  const auto particles = generate_particles<dim>(
+    BallShape<dim>(Point<dim>(), 1, true),
+    GenerationSettings(0.1, true),
+    [](const Point<dim> &) { return true; },
+    dealii::BoundingBox<dim>({-Point<dim>::unit_vector(0), Point<dim>()}),
+    MPI_COMM_SELF);
+  double                 outermost = 0, nearest = 1;
+  dealii::Tensor<1, dim> centre;
+  for (const auto &x : particles.positions)
+    {
+      outermost = std::max(outermost, x.norm());
+      centre += (1. / particles.n_total) * x;
+      for (const auto &y : particles.positions)
+        if (&x != &y)
+          nearest = std::min(nearest, x.distance(y));
+    }
+  deallog << "shells: outermost at " << outermost << ", centre off less than 1e-3 "
+          << (centre.norm() < 1e-3) << ", nearest ones more than half a spacing apart "
+          << (nearest > 0.05) << std::endl;
+}
+
 int
 main(int argc, char **argv)
 {
@@ -85,6 +112,10 @@ main(int argc, char **argv)
   // A lattice misses a disc of 40 particles across by 0.6 %, a ball of 20 across by 0.8 %.
   test<2>("disc", BallShape<2>(Point<2>(3, 2), 0.2), 0.01);
   test<3>("ball", BallShape<3>(Point<3>(3, 2, 2), 0.2), 0.02);
+  test<2>("disc in shells", BallShape<2>(Point<2>(3, 2), 0.2, true), 0.01);
+  test<3>("ball in shells", BallShape<3>(Point<3>(3, 2, 2), 0.2, true), 0.02);
+  test_shells<2>();
+  test_shells<3>();
   test<2>("triangle",
           PolygonShape<2>({Point<2>(2, 0), Point<2>(3.5, 0), Point<2>(3.5, 1.4)}),
           0.05);

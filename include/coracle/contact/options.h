@@ -36,9 +36,21 @@ enum class LocalMethod
   perpendicular_foot
 };
 
+/// Where particles and structures meet.
+enum class Method
+{
+  surface,
+  grid
+};
+
 /// What the section `Contact` of a parameter file says.
 struct ContactOptions
 {
+  Method method = Method::surface;
+  /// Do bodies of different velocity fields meet on the grid, and with which Coulomb coefficient
+  /// [1]?
+  bool   between_fields          = false;
+  double friction_between_fields = 0;
   /// Default of the surfaces' Coulomb coefficient [1].
   double      friction     = 0;
   Search      search       = Search::aabb_tree;

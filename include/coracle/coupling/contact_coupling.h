@@ -3,7 +3,7 @@
 
 #include <coracle/contact/contact_system.h>
 #include <coracle/contact/initial_overlaps.h>
-#include <coracle/coupling/material_point_system.h>
+#include <coracle/coupling/grid_contact.h>
 #include <coracle/coupling/structure_points.h>
 
 namespace coracle
@@ -21,6 +21,7 @@ class ContactCoupling
 {
 public:
   ContactCoupling(const contact::ContactOptions &options,
+                  MaterialPointSystem<dim>      &points,
                   StructureSystem<dim>          &structure,
                   MPI_Comm                       comm);
 
@@ -31,8 +32,12 @@ public:
   /// Independent check of all particles near the surface over the step just moved. Collective.
   void audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
 
-  const contact::ContactReport &report() const { return system.report(); }
-  std::uint64_t                 n_penetrations() const { return penetrations; }
+  /// Contacts of particles with facets, or pairs of bodies at nodes.
+  const contact::ContactReport &report() const
+  {
+    return on_grid.is_used() ? report_with_grid : system.report();
+  }
+  std::uint64_t n_penetrations() const { return penetrations; }
 
   /// Momentum that contact has given to each material point body so far; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
@@ -54,6 +59,10 @@ public:
                                      StructureSystem<dim>     &structure);
 
 private:
+  void solve_on_grid(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
+  void solve_on_surface(MaterialPointSystem<dim> &points,
+                        StructureSystem<dim>     &structure,
+                        const double              dt);
   /// At the start: those of this rank's particles, and their number on all ranks.
   std::vector<contact::Overlap<dim>> find_overlaps(MaterialPointSystem<dim> &points,
                                                    StructureSystem<dim>     &structure,
@@ -78,6 +87,9 @@ private:
 
   const contact::InitialOverlap initial_overlap;
   MPI_Comm                      comm;
+  const contact::Method         method;
+  GridContact<dim>              on_grid;
+  contact::ContactReport        report_with_grid;
   contact::ContactSystem<dim>   system;
   StructurePoints<dim>          surface_nodes;
   /// Material point bodies, then bodies with surface nodes as points.

@@ -50,6 +50,12 @@ public:
                      const std::vector<dealii::Tensor<1, dim>> &correction,
                      const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid);
 
+  /**
+   * Impulses on any nodes, also inside bodies. Collective.
+   * @param impulse per body, solids first, and node that this rank owns [N s]
+   */
+  void apply_node_impulses(const std::vector<std::vector<dealii::Tensor<1, dim>>> &impulse);
+
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 

@@ -72,7 +72,8 @@ struct GeneratedParticles
  * Particles at the lattice points inside a shape, each rank its own. A particle
  * stands for a whole lattice cell even where the shape's boundary cuts it, so
  * that a curved shape's volume is met on average only; `exact_volume` puts that
- * right for the sum.
+ * right for the sum. Shapes that bring places of their own (balls in shells) are
+ * not filled from the lattice and have their exact volume.
  *
  * Collective; nothing but the number of particles is exchanged.
  *

@@ -6,6 +6,7 @@
 #include <deal.II/base/bounding_box.h>
 #include <deal.II/base/point.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -30,6 +31,17 @@ public:
 
   /// Exact volume [m^dim], where it is known in closed form.
   virtual std::optional<double> volume() const = 0;
+
+  /**
+   * Calls action(place) for the particles of a shape that follow its boundary, all of one volume
+   * and about `spacing` [m] apart; in the same order on all ranks.
+   * @return false, and no call, for shapes that are filled from a lattice
+   */
+  virtual bool for_each_place(const double,
+                              const std::function<void(const dealii::Point<dim> &)> &) const
+  {
+    return false;
+  }
 };
 
 /// The entry `Shape` of a body and the entries that each shape has.

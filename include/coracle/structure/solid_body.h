@@ -50,6 +50,9 @@ public:
   /// Velocities of the step of length dt, without contact.
   void predict_velocities(const double dt);
 
+  /// Contact may touch all nodes, also inside, from now on.
+  void contact_through_volume();
+
   /// Contact impulse on a node of surface_nodes() [N s], from any rank that has it.
   void add_contact_impulse(const unsigned int node, const Vector &impulse);
   /// Sum the impulses of all ranks and change the velocities.

@@ -66,14 +66,46 @@ add_line(const Parameters &section, FacetList<2> &lines)
       }
 }
 
+/// Divide the facet that a point lies on, so that a line which ends there is joined to it.
+void
+divide_at(const unsigned int p, const double tolerance, FacetList<2> &lines)
+{
+  for (std::size_t f = 0; f < lines.facets.size(); ++f)
+    {
+      const auto [a, b]   = lines.facets[f];
+      const auto   along  = lines.points[b] - lines.points[a];
+      const auto   from_a = lines.points[p] - lines.points[a];
+      const double length = along.norm();
+      const double place  = from_a * along / length;
+      const bool   is_near =
+        std::fabs(from_a[0] * along[1] - from_a[1] * along[0]) <= tolerance * length;
+      if (is_near && place > tolerance && place < length - tolerance)
+        {
+          lines.facets[f] = {{a, p}};
+          lines.facets.insert(lines.facets.begin() + f + 1, {{p, b}});
+        }
+    }
+}
+
 FacetList<2>
 polylines(const Parameters &section)
 {
-  FacetList<2> lines;
-  add_line(section, lines);
+  FacetList<2>              lines;
+  std::vector<unsigned int> ends;
+  const auto                add = [&](const Parameters &line) {
+    ends.push_back(lines.points.size());
+    add_line(line, lines);
+    ends.push_back(lines.points.size() - 1);
+  };
+  add(section);
   const Parameters further = section.section("Further lines");
   for (const std::string &name : further.section_names())
-    add_line(further.section(name), lines);
+    add(further.section(name));
+  double size = 0;
+  for (const auto &p : lines.points)
+    size = std::max(size, p.distance(lines.points[0]));
+  for (const unsigned int end : ends)
+    divide_at(end, same_point * size, lines);
   return lines;
 }
 
@@ -238,7 +270,7 @@ declare_sheets(Declaration &section)
   declare_line(line.named_sections("Further lines",
                                    "line",
                                    "More lines of the same body; they are joined where points are "
-                                   "at the same place"));
+                                   "at the same place, and where one ends on another"));
   line.quantity("Length", "1", "m", "", "along z, from 0, 3-D only", 0.);
   line.integer("Subdivisions along z", 1, "facets along z, 3-D only", 1);
   section.when("Type", "surface file")

@@ -123,6 +123,8 @@ main(int argc, char **argv)
   // Area vectors of a flange along x and a web along y; of two lines that cross.
   report<2>("T", polyline + "0, 0, 1, 0, 3, 0\n" + further("1, -2, 1, 0"));
   report<2>("T, web first", polyline + "1, -2, 1, 0, 3, 0\n" + further("0, 0, 1, 0"));
+  // A web that ends in the middle of a facet divides it.
+  report<2>("T, divided", polyline + "0, 0, 3, 0\n" + further("1, -2, 1, 0"));
   report<2>("cross", polyline + "0, 0, 1, 0, 1, 1\n" + further("2, 0, 1, 0, 1, -1"));
   report<2>("square", polyline + "0, 0, 1, 0, 1, 1, 0, 1, 0, 0\n set Subdivisions = 1, 2, 1, 2");
   deallog.pop();

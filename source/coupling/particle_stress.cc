@@ -39,7 +39,10 @@ public:
     for (const unsigned int leaf : points.occupied_cells())
       sweep_cell(leaf);
     for (const auto &stray : points.strays)
-      sweep_stray(stray);
+      if (!points.cuts.contains(stray.row))
+        update_lone(stray.row, stray_gradient(stray), stray.leaf, stray.leaf);
+    for (unsigned int i = 0; i < points.cuts.size(); ++i)
+      update_lone(points.cuts.row[i], cut_gradient(i), points.cuts.leaf[i], points.cuts.mean[i]);
     result.work    = sum(work);
     result.kinetic = sum(kinetic);
     if (!std::isfinite(result.work + result.kinetic) || !std::isfinite(result.rate) ||
@@ -51,7 +54,8 @@ private:
   Mask8 inside(const unsigned int leaf, const std::size_t row, const Vector<dim, Pack8> &x) const
   {
     const Pack8 margin = gimp ? 0.5 * load<Pack8>(points.column(Layout::size) + row) : Pack8{};
-    return inside_cell<dim>(x, octree.lower(leaf), octree.size(leaf), margin);
+    const Mask8 here   = inside_cell<dim>(x, octree.lower(leaf), octree.size(leaf), margin);
+    return points.cuts.empty() ? here : Mask8(here & points.cuts.others(row));
   }
 
   Matrix<dim, Pack8> gradient(const PackShape<dim>                       &shape,
@@ -78,15 +82,18 @@ private:
   // Strays first, so that each cell knows all that is in it.
   void begin_means()
   {
-    points.means.reinit(octree.n_leaves());
+    points.means.reinit(octree.n_leaves() + points.cuts.n_means);
     for (const auto &stray : points.strays)
-      {
-        const double v = volume(stray.row);
-        points.means.add_sums(stray.leaf,
-                              v,
-                              v * trace<dim>(stray_gradient(stray)),
-                              points.column(Layout::mass)[stray.row]);
-      }
+      if (!points.cuts.contains(stray.row))
+        add_to_mean(stray.row, stray_gradient(stray), stray.leaf);
+    for (unsigned int i = 0; i < points.cuts.size(); ++i)
+      add_to_mean(points.cuts.row[i], cut_gradient(i), points.cuts.mean[i]);
+  }
+
+  void add_to_mean(const std::size_t row, const Matrix<dim, double> &l, const unsigned int place)
+  {
+    const double v = volume(row);
+    points.means.add_sums(place, v, v * trace<dim>(l), points.column(Layout::mass)[row]);
   }
 
   double volume(const std::size_t row) const
@@ -131,10 +138,10 @@ private:
     end_cell(size);
   }
 
-  void take_means(const unsigned int leaf)
+  void take_means(const unsigned int place)
   {
-    mean_divergence      = points.means.mean(leaf);
-    mean_specific_volume = points.means.weight_per_mass(leaf);
+    mean_divergence      = points.means.mean(place);
+    mean_specific_volume = points.means.weight_per_mass(place);
   }
 
   // One square root a cell. Comparisons turn a NaN into 0 here; the sums find it.
@@ -165,19 +172,35 @@ private:
     return l;
   }
 
-  void sweep_stray(const typename MaterialPoints<dim>::Stray &stray)
+  Matrix<dim, double> cut_gradient(const unsigned int i) const
   {
-    const Matrix<dim, double> scalar = stray_gradient(stray);
-    Matrix<dim, Pack8>        l;
+    Matrix<dim, double> l{};
+    for (std::size_t k = points.cuts.begin[i]; k < points.cuts.begin[i + 1]; ++k)
+      {
+        const auto &entry = points.cuts.entries[k];
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            l[d][e] += entry.gradient[e] * velocity[entry.node][place + d];
+      }
+    return l;
+  }
+
+  // A particle on its own: a stray or one that a sheet cuts.
+  void update_lone(const std::size_t          row,
+                   const Matrix<dim, double> &scalar,
+                   const unsigned int         leaf,
+                   const unsigned int         mean)
+  {
+    Matrix<dim, Pack8> l;
     for (int d = 0; d < dim; ++d)
       for (int e = 0; e < dim; ++e)
         l[d][e] = splat<Pack8>(scalar[d][e]);
     Mask8 first{};
     first[0] = -1;
     if (cell_mean)
-      take_means(stray.leaf);
-    update_rows(stray.row, 1, first, octree.size(stray.leaf), l);
-    end_cell(octree.size(stray.leaf));
+      take_means(mean);
+    update_rows(row, 1, first, octree.size(leaf), l);
+    end_cell(octree.size(leaf));
   }
 
   // Rows row ... row + n_lanes - 1 where `here`; the other lanes are computed and thrown away.

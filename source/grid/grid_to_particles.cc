@@ -34,6 +34,7 @@ public:
     , motion(field.motion())
     , points(points)
     , affine_column(points.layout().affine)
+    , cutting(!points.cuts.empty())
   {}
 
   /// Kinetic energy of the particles afterwards.
@@ -42,7 +43,10 @@ public:
     for (const unsigned int leaf : points.occupied_cells())
       sweep_cell(leaf);
     for (const auto &stray : points.strays)
-      sweep_stray(stray);
+      if (!points.cuts.contains(stray.row))
+        sweep_stray(stray);
+    for (unsigned int i = 0; i < points.cuts.size(); ++i)
+      sweep_cut(i);
     return sum(kinetic);
   }
 
@@ -107,7 +111,9 @@ private:
       {
         const Vector<dim, Pack8> x = load_vector(points, Layout::position, row);
         const Pack8 margin = gimp ? 0.5 * load<Pack8>(points.column(Layout::size) + row) : Pack8{};
-        const Mask8 here   = inside_cell<dim>(x, lower, size, margin);
+        Mask8       here   = inside_cell<dim>(x, lower, size, margin);
+        if (cutting)
+          here &= points.cuts.others(row);
         Vector<dim, Pack8> xi;
         for (int d = 0; d < dim; ++d)
           xi[d] = (x[d] - lower[d]) * inverse_size;
@@ -180,17 +186,7 @@ private:
                    [&](const int leaf, const dealii::Point<dim> &piece, const double fraction) {
                      take_piece(leaf, piece, fraction, taken);
                    });
-    const Vector<dim, double> v = new_velocity(get_vector(points, Layout::velocity, row), taken);
-    for (int d = 0; d < dim; ++d)
-      {
-        kinetic[0] += 0.5 * points.column(Layout::mass)[row] * v[d] * v[d];
-        points.column(Layout::velocity + d)[row] = v[d];
-        points.column(Layout::next_position + d)[row] =
-          centre[d] + dt * taken.velocity[d] + taken.shift[d];
-        if constexpr (affine)
-          for (int e = 0; e < dim; ++e)
-            points.column(affine_column + dim * d + e)[row] = taken.gradient[d][e];
-      }
+    update_row(row, taken);
     if constexpr (remap)
       for_each_piece(octree,
                      centre,
@@ -205,6 +201,52 @@ private:
                                  sums);
                        sums.give_to(field.gathered(), octree.nodes(leaf));
                      });
+  }
+
+  // One particle with what it has taken.
+  void update_row(const std::size_t row, const Taken<dim, double> &taken)
+  {
+    const Vector<dim, double> v = new_velocity(get_vector(points, Layout::velocity, row), taken);
+    for (int d = 0; d < dim; ++d)
+      {
+        kinetic[0] += 0.5 * points.column(Layout::mass)[row] * v[d] * v[d];
+        points.column(Layout::velocity + d)[row] = v[d];
+        points.column(Layout::next_position + d)[row] =
+          points.column(Layout::position + d)[row] + dt * taken.velocity[d] + taken.shift[d];
+        if constexpr (affine)
+          for (int e = 0; e < dim; ++e)
+            points.column(affine_column + dim * d + e)[row] = taken.gradient[d][e];
+      }
+  }
+
+  void sweep_cut(const unsigned int i)
+  {
+    const unsigned int row   = points.cuts.row[i];
+    const auto        *begin = points.cuts.entries.data() + points.cuts.begin[i],
+               *end          = points.cuts.entries.data() + points.cuts.begin[i + 1];
+    Taken<dim, double> taken;
+    for (const auto *entry = begin; entry != end; ++entry)
+      {
+        const NodeRecord &node = motion[entry->node];
+        for (int d = 0; d < dim; ++d)
+          {
+            taken.velocity[d] += entry->value * node[Motion::velocity + d];
+            taken.change[d] += entry->value * node[Motion::change + d];
+            taken.shift[d] += entry->value * field.shift(entry->node)[d];
+            for (int e = 0; e < dim; ++e)
+              taken.gradient[d][e] += entry->gradient[e] * node[Motion::velocity + d];
+          }
+      }
+    update_row(row, taken);
+    if constexpr (remap)
+      {
+        const double              m        = points.column(Layout::mass)[row];
+        const Vector<dim, double> velocity = get_vector(points, Layout::velocity, row);
+        for (const auto *entry = begin; entry != end; ++entry)
+          for (int d = 0; d < dim; ++d)
+            field.gathered()[entry->node][Gathered::momentum + d] +=
+              m * entry_velocity<dim, affine>(points, row, velocity, *entry, d);
+      }
   }
 
   void take_piece(const int                 leaf,
@@ -264,6 +306,7 @@ private:
   const NodeRecords   &motion;
   MaterialPoints<dim> &points;
   const int            affine_column;
+  const bool           cutting;
   Pack8                kinetic{};
 };
 } // namespace

@@ -206,14 +206,7 @@ sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPo
     for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
       {
         const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
-        bool         inside = true;
-        for (int d = 0; d < dim; ++d)
-          {
-            const double x = points.column(Layout<dim>::position + d)[row];
-            inside         = inside && x - margin >= octree.lower(leaf)[d] &&
-                     x + margin < octree.lower(leaf)[d] + octree.size(leaf);
-          }
-        if (!inside)
+        if (!is_inside_leaf(octree, leaf, points.position(row), margin))
           points.strays.push_back({row, static_cast<int>(leaf)});
       }
 }

@@ -10,9 +10,12 @@ constexpr double no_mass = 1e-100;
 } // namespace
 
 template <int dim>
-NodalField<dim>::NodalField(const Octree<dim> &octree, const BoxBoundary<dim> &boundary)
+NodalField<dim>::NodalField(const Octree<dim>      &octree,
+                            const BoxBoundary<dim> &boundary,
+                            const NodeSplit<dim>   *split)
   : octree(octree)
   , boundary(boundary)
+  , split(split)
   , records(octree.n_nodes())
   , motions(octree.n_nodes())
   , impulses(octree.n_nodes())
@@ -24,13 +27,21 @@ template <int dim>
 void
 NodalField<dim>::clear()
 {
-  std::fill(records.begin(), records.end(), NodeRecord());
   for (const unsigned int node : shifted_nodes)
     {
       shifts[node]  = dealii::Tensor<1, dim>();
       shifted[node] = 0;
     }
   shifted_nodes.clear();
+  if (n_records() != records.size())
+    {
+      records.resize(n_records());
+      motions.resize(n_records());
+      impulses.resize(n_records());
+      shifts.resize(n_records());
+      shifted.resize(n_records(), 0);
+    }
+  std::fill(records.begin(), records.end(), NodeRecord());
 }
 
 template <int dim>
@@ -63,17 +74,35 @@ NodalField<dim>::interpolate_hanging(NodeRecords &r) const
 
 template <int dim>
 void
+NodalField<dim>::sum_to_owners(NodeRecords &r) const
+{
+  octree.exchange.sum_to_owners(r);
+  if (split)
+    split->sum_to_owners(r);
+}
+
+template <int dim>
+void
+NodalField<dim>::update_ghosts(NodeRecords &r) const
+{
+  octree.exchange.update_ghosts(r);
+  if (split)
+    split->update_ghosts(r);
+}
+
+template <int dim>
+void
 NodalField<dim>::sum()
 {
   condense(records);
-  octree.exchange.sum_to_owners(records);
+  sum_to_owners(records);
 }
 
 template <int dim>
 void
 NodalField<dim>::distribute()
 {
-  octree.exchange.update_ghosts(motions);
+  update_ghosts(motions);
   interpolate_hanging(motions);
 }
 
@@ -82,51 +111,53 @@ void
 NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
 {
   books = Energies();
-  for (unsigned int i = 0; i < octree.n_owned_nodes(); ++i)
-    {
-      const NodeRecord &r = records[i];
-      NodeRecord       &m = motions[i];
-      m                   = NodeRecord();
-      const double mass   = r[Gathered::mass];
-      if (mass <= no_mass)
-        continue;
-      const double inverse = 1. / mass;
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          const double before     = r[Gathered::momentum + d] * inverse;
-          const double change     = dt * (r[Gathered::force + d] * inverse + gravity[d]);
-          m[Motion::change + d]   = change;
-          m[Motion::velocity + d] = before + change;
-          books.gathered += 0.5 * mass * before * before;
-          books.gravity += mass * dt * gravity[d] * (before + 0.5 * change);
-          books.given += 0.5 * mass * (before + change) * (before + change);
-        }
-      m[Motion::mass] = mass;
-    }
+  for_each_owned([&](const unsigned int i) { predict_node(i, dt, gravity); });
   fix_boundary_nodes(dt, gravity);
   distribute();
+}
+
+template <int dim>
+inline void
+NodalField<dim>::predict_node(const unsigned int            i,
+                              const double                  dt,
+                              const dealii::Tensor<1, dim> &gravity)
+{
+  const NodeRecord &r = records[i];
+  NodeRecord       &m = motions[i];
+  m                   = NodeRecord();
+  const double mass   = r[Gathered::mass];
+  if (mass <= no_mass)
+    return;
+  const double inverse = 1. / mass;
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      const double before     = r[Gathered::momentum + d] * inverse;
+      const double change     = dt * (r[Gathered::force + d] * inverse + gravity[d]);
+      m[Motion::change + d]   = change;
+      m[Motion::velocity + d] = before + change;
+      books.gathered += 0.5 * mass * before * before;
+      books.gravity += mass * dt * gravity[d] * (before + 0.5 * change);
+      books.given += 0.5 * mass * (before + change) * (before + change);
+    }
+  m[Motion::mass] = mass;
 }
 
 template <int dim>
 void
 NodalField<dim>::fix_boundary_nodes(const double dt, const dealii::Tensor<1, dim> &gravity)
 {
-  for (const unsigned int i : boundary.fixed_nodes())
-    if (i < octree.n_owned_nodes())
-      for (unsigned int d = 0; d < dim; ++d)
-        if (boundary.fixed(i) & (1u << d))
-          {
-            NodeRecord  &m    = motions[i];
-            const double mass = m[Motion::mass], free = m[Motion::velocity + d],
-                         change = m[Motion::change + d], before = free - change;
-            // Forces on a fixed node do no work; what is lost is what particles brought there.
-            books.gravity -= mass * dt * gravity[d] * (before + 0.5 * change);
-            books.given -= 0.5 * mass * free * free;
-            books.boundary += 0.5 * mass * before * before;
-            // The change takes what particles brought, so that they stop as well.
-            m[Motion::change + d]   = -before;
-            m[Motion::velocity + d] = 0;
-          }
+  for_each_fixed([&](const unsigned int i, const unsigned int d) {
+    NodeRecord  &m    = motions[i];
+    const double mass = m[Motion::mass], free = m[Motion::velocity + d],
+                 change = m[Motion::change + d], before = free - change;
+    // Forces on a fixed node do no work; what is lost is what particles brought there.
+    books.gravity -= mass * dt * gravity[d] * (before + 0.5 * change);
+    books.given -= 0.5 * mass * free * free;
+    books.boundary += 0.5 * mass * before * before;
+    // The change takes what particles brought, so that they stop as well.
+    m[Motion::change + d]   = -before;
+    m[Motion::velocity + d] = 0;
+  });
 }
 
 template <int dim>
@@ -152,46 +183,50 @@ template <int dim>
 void
 NodalField<dim>::apply_impulses()
 {
-  octree.exchange.sum_to_owners(impulses);
-  octree.exchange.update_ghosts(impulses);
-  const auto apply = [&](const unsigned int node) {
-    NodeRecord                  &r       = impulses[node];
-    const dealii::Tensor<1, dim> inverse = inverse_mass(node);
-    bool                         moves   = false;
-    const bool                   owned   = node < octree.n_owned_nodes();
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        if (owned && inverse[d] > 0)
-          {
-            const double mean = motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d];
-            books.given += r[d] * mean;
-            // Forces and contact act at once, over the same way: from the velocity at the start of
-            // the step to that at its end. So bodies that lean on each other lose nothing.
-            books.contact += r[d] * (mean - 0.5 * motions[node][Motion::change + d]);
-          }
-        motions[node][Motion::velocity + d] += r[d] * inverse[d];
-        motions[node][Motion::change + d] += r[d] * inverse[d];
-        shifts[node][d] = r[dim + d] * inverse[d];
-        moves           = moves || shifts[node][d] != 0;
-      }
-    if (moves && !shifted[node])
-      {
-        shifted[node] = 1;
-        shifted_nodes.push_back(node);
-      }
-    r = NodeRecord();
-  };
+  sum_to_owners(impulses);
+  update_ghosts(impulses);
   if (octree.exchange.is_serial())
     for (const unsigned int node : touched)
-      apply(node);
+      apply_impulse(node);
   else
-    for (unsigned int node = 0; node < octree.n_nodes(); ++node)
+    for (unsigned int node = 0; node < n_records(); ++node)
       if (impulses[node][7] != 0)
-        apply(node);
+        apply_impulse(node);
   touched.clear();
 
   interpolate_hanging(motions);
   shift_hanging_nodes();
+}
+
+template <int dim>
+void
+NodalField<dim>::apply_impulse(const unsigned int node)
+{
+  NodeRecord                  &r       = impulses[node];
+  const dealii::Tensor<1, dim> inverse = inverse_mass(node);
+  bool                         moves   = false;
+  const bool owned = split ? split->is_owned(node) : node < octree.n_owned_nodes();
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      if (owned && inverse[d] > 0)
+        {
+          const double mean = motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d];
+          books.given += r[d] * mean;
+          // Forces and contact act at once, over the same way: from the velocity at the start of
+          // the step to that at its end. So bodies that lean on each other lose nothing.
+          books.contact += r[d] * (mean - 0.5 * motions[node][Motion::change + d]);
+        }
+      motions[node][Motion::velocity + d] += r[d] * inverse[d];
+      motions[node][Motion::change + d] += r[d] * inverse[d];
+      shifts[node][d] = r[dim + d] * inverse[d];
+      moves           = moves || shifts[node][d] != 0;
+    }
+  if (moves && !shifted[node])
+    {
+      shifted[node] = 1;
+      shifted_nodes.push_back(node);
+    }
+  r = NodeRecord();
 }
 
 template <int dim>
@@ -229,21 +264,16 @@ template <int dim>
 void
 NodalField<dim>::remap()
 {
-  const unsigned int n = octree.n_owned_nodes();
-  for (unsigned int i = 0; i < n; ++i)
-    {
-      NodeRecord  &r       = records[i];
-      const double mass    = r[Gathered::mass];
-      const double inverse = mass > no_mass ? 1. / mass : 0.;
-      for (unsigned int d = 0; d < dim; ++d)
-        r[Gathered::momentum + d] *= inverse;
-    }
-  for (const unsigned int i : boundary.fixed_nodes())
-    if (i < n)
-      for (unsigned int d = 0; d < dim; ++d)
-        if (boundary.fixed(i) & (1u << d))
-          records[i][Gathered::momentum + d] = 0;
-  octree.exchange.update_ghosts(records);
+  for_each_owned([&](const unsigned int i) {
+    NodeRecord  &r       = records[i];
+    const double mass    = r[Gathered::mass];
+    const double inverse = mass > no_mass ? 1. / mass : 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      r[Gathered::momentum + d] *= inverse;
+  });
+  for_each_fixed(
+    [&](const unsigned int i, const unsigned int d) { records[i][Gathered::momentum + d] = 0; });
+  update_ghosts(records);
   interpolate_hanging(records);
 }
 
@@ -255,7 +285,7 @@ NodalField<dim>::inverse_mass(const unsigned int node) const
   const double           mass = motions[node][Motion::mass];
   if (mass > no_mass)
     for (unsigned int d = 0; d < dim; ++d)
-      if (!(boundary.fixed(node) & (1u << d)))
+      if (!(fixed(node) & (1u << d)))
         result[d] = 1. / mass;
   return result;
 }
@@ -275,10 +305,11 @@ dealii::Tensor<1, dim>
 NodalField<dim>::momentum() const
 {
   dealii::Tensor<1, dim> result;
-  for (unsigned int i = 0; i < octree.n_owned_nodes(); ++i)
-    if (octree.hanging_index(i) < 0)
+  for_each_owned([&](const unsigned int i) {
+    if (i >= octree.n_nodes() || octree.hanging_index(i) < 0)
       for (unsigned int d = 0; d < dim; ++d)
         result[d] += motions[i][Motion::mass] * motions[i][Motion::velocity + d];
+  });
   return result;
 }
 
@@ -286,7 +317,7 @@ template <int dim>
 std::size_t
 NodalField<dim>::memory_consumption() const
 {
-  return records.size() * (3 * sizeof(NodeRecord) + sizeof(shifts[0]) + 1);
+  return 3 * records.capacity() * sizeof(NodeRecord) + shifts.capacity() * (sizeof(shifts[0]) + 1);
 }
 
 template class NodalField<2>;

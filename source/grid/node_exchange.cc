@@ -63,7 +63,7 @@ NodeExchange::sum_to_owners(NodeRecords &records) const
   for (std::size_t i = 0; i < imported.size(); ++i)
     for (unsigned int k = 0; k < 8; ++k)
       records[imported[i]][k] += buffer[i][k];
-  std::fill(records.begin() + n_owned(), records.end(), NodeRecord());
+  std::fill_n(records.begin() + n_owned(), n_ghosts(), NodeRecord());
 }
 
 void

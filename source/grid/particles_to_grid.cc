@@ -36,6 +36,7 @@ public:
     , points(points)
     , gimp(options.shape == ParticleShape::gimp)
     , averaging(force && options.average_pressure)
+    , cutting(!points.cuts.empty())
     , records(field.gathered())
     , stress(points.layout().stress)
     , affine_column(points.layout().affine)
@@ -45,21 +46,30 @@ public:
   {
     if (averaging)
       {
-        points.means.reinit(octree.n_leaves());
+        points.means.reinit(octree.n_leaves() + points.cuts.n_means);
         for (const auto &stray : points.strays)
-          points.means.add(stray.leaf, volume(stray.row), pressure(stray.row));
+          if (!points.cuts.contains(stray.row))
+            points.means.add(stray.leaf, volume(stray.row), pressure(stray.row));
+        for (unsigned int i = 0; i < points.cuts.size(); ++i)
+          points.means.add(points.cuts.mean[i],
+                           volume(points.cuts.row[i]),
+                           pressure(points.cuts.row[i]));
       }
     for (const unsigned int leaf : points.occupied_cells())
       sweep_cell(leaf);
     for (const auto &stray : points.strays)
-      give_stray(stray);
+      if (!points.cuts.contains(stray.row))
+        give_stray(stray);
+    for (unsigned int i = 0; i < points.cuts.size(); ++i)
+      give_cut(i);
   }
 
 private:
   Mask8 inside(const unsigned int leaf, const std::size_t row, const Vector<dim, Pack8> &x) const
   {
     const Pack8 margin = gimp ? 0.5 * load<Pack8>(points.column(Layout::size) + row) : Pack8{};
-    return inside_cell<dim>(x, octree.lower(leaf), octree.size(leaf), margin);
+    const Mask8 here   = inside_cell<dim>(x, octree.lower(leaf), octree.size(leaf), margin);
+    return cutting ? Mask8(here & points.cuts.others(row)) : here;
   }
 
   void sweep_cell(const unsigned int leaf)
@@ -127,6 +137,55 @@ private:
                    });
   }
 
+  // Stress as forces see it.
+  Symmetric<dim, double> stress_of(const std::size_t row, const double mean_pressure) const
+  {
+    Symmetric<dim, double> s;
+    for (int k = 0; k < Symmetric<dim, double>::size; ++k)
+      s[k] = points.column(stress + k)[row];
+    if (averaging)
+      {
+        const double change = -s.trace() / 3. - mean_pressure;
+        for (int k = 0; k < 3; ++k)
+          s[k] += change;
+      }
+    return s;
+  }
+
+  void give_cut(const unsigned int i)
+  {
+    using Gathered                 = typename NodalField<dim>::Gathered;
+    const unsigned int        row  = points.cuts.row[i];
+    const double              mean = averaging ? points.means.mean(points.cuts.mean[i]) : 0.;
+    const double              m = points.column(Layout::mass)[row], v = volume(row);
+    const Vector<dim, double> velocity = get_vector(points, Layout::velocity, row);
+    Symmetric<dim, double>    s;
+    if constexpr (force && !isotropic)
+      s = stress_of(row, mean);
+    const double p = averaging ? mean : points.column(stress)[row];
+    for (std::size_t e = points.cuts.begin[i]; e < points.cuts.begin[i + 1]; ++e)
+      {
+        const auto &entry  = points.cuts.entries[e];
+        NodeRecord &record = records[entry.node];
+        if constexpr (mass)
+          {
+            record[Gathered::mass] += m * entry.value;
+            for (int d = 0; d < dim; ++d)
+              record[Gathered::momentum + d] +=
+                m * entry_velocity<dim, affine>(points, row, velocity, entry, d);
+          }
+        if constexpr (force)
+          for (int d = 0; d < dim; ++d)
+            {
+              if constexpr (isotropic)
+                record[Gathered::force + d] += v * p * entry.gradient[d];
+              else
+                for (int k = 0; k < dim; ++k)
+                  record[Gathered::force + d] -= v * s(d, k) * entry.gradient[k];
+            }
+      }
+  }
+
   void give(const Sample<dim> &sample, CornerSums<dim> &sums) const
   {
     const CornerShape<dim> shape(sample.xi);
@@ -144,15 +203,7 @@ private:
                         sample.volume_per_size);
     if constexpr (force && !isotropic)
       {
-        Symmetric<dim, double> s;
-        for (int k = 0; k < Symmetric<dim, double>::size; ++k)
-          s[k] = points.column(stress + k)[sample.row];
-        if (averaging)
-          {
-            const double change = -s.trace() / 3. - sample.mean_pressure;
-            for (int k = 0; k < 3; ++k)
-              s[k] += change;
-          }
+        const Symmetric<dim, double> s = stress_of(sample.row, sample.mean_pressure);
         sums.add_stress(shape, s, sample.volume_per_size);
       }
   }
@@ -201,7 +252,7 @@ private:
 
   const Octree<dim>   &octree;
   MaterialPoints<dim> &points;
-  const bool           gimp, averaging;
+  const bool           gimp, averaging, cutting;
   NodeRecords         &records;
   const int            stress, affine_column;
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <coracle/grid/box_boundary.h>
-#include <coracle/grid/octree.h>
+#include <coracle/grid/node_split.h>
 
 #include <vector>
 
@@ -13,6 +13,9 @@ namespace coracle
  * how the nodes then move. Bodies of one field meet without slip and without
  * passing through each other; bodies of different fields do not feel each
  * other here at all.
+ *
+ * Where sheets split the field, nodes have further records (NodeSplit); "node" below means any
+ * record.
  *
  * The calls of one step, in order:
  *   clear, (particles scatter), sum, predict, [contact], distribute,
@@ -34,11 +37,15 @@ public:
     static constexpr unsigned int velocity = 0, change = dim, mass = 6;
   };
 
-  NodalField(const Octree<dim> &octree, const BoxBoundary<dim> &boundary);
+  /// @param split further records of nodes that sheets cut off; null: there are none
+  NodalField(const Octree<dim>      &octree,
+             const BoxBoundary<dim> &boundary,
+             const NodeSplit<dim>   *split = nullptr);
 
   NodeRecords       &gathered() { return records; }
   const NodeRecords &motion() const { return motions; }
 
+  /// For a new step; takes the records that the split has now.
   void clear();
   /// Hanging nodes give what they have to their parents, ghosts to their owners.
   void sum();
@@ -84,6 +91,42 @@ public:
   std::size_t            memory_consumption() const;
 
 private:
+  unsigned int  n_records() const { return split ? split->n_records() : octree.n_nodes(); }
+  unsigned char fixed(const unsigned int record) const
+  {
+    return boundary.fixed(split ? split->node(record) : record);
+  }
+  /// Calls action(record) for all that this rank owns.
+  template <typename Action>
+  void for_each_owned(const Action &action) const
+  {
+    for (unsigned int i = 0; i < octree.n_owned_nodes(); ++i)
+      action(i);
+    for (unsigned int i = octree.n_nodes(); i < n_records(); ++i)
+      if (split->is_owned(i))
+        action(i);
+  }
+  /// Calls action(record, direction) for all that this rank owns and the box fixes.
+  template <typename Action>
+  void for_each_fixed(const Action &action) const
+  {
+    const auto directions = [&](const unsigned int record) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (fixed(record) & (1u << d))
+          action(record, d);
+    };
+    for (const unsigned int i : boundary.fixed_nodes())
+      if (i < octree.n_owned_nodes())
+        directions(i);
+    for (unsigned int i = octree.n_nodes(); i < n_records(); ++i)
+      if (split->is_owned(i))
+        directions(i);
+  }
+  void sum_to_owners(NodeRecords &r) const;
+  void update_ghosts(NodeRecords &r) const;
+
+  void predict_node(const unsigned int i, const double dt, const dealii::Tensor<1, dim> &gravity);
+  void apply_impulse(const unsigned int node);
   void fix_boundary_nodes(const double dt, const dealii::Tensor<1, dim> &gravity);
   void shift_hanging_nodes();
   void condense(NodeRecords &r) const;
@@ -91,6 +134,7 @@ private:
 
   const Octree<dim>                  &octree;
   const BoxBoundary<dim>             &boundary;
+  const NodeSplit<dim>               *split;
   NodeRecords                         records, motions, impulses;
   std::vector<unsigned int>           touched;
   std::vector<dealii::Tensor<1, dim>> shifts;

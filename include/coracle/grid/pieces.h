@@ -83,6 +83,21 @@ for_each_piece(const Octree<dim>        &octree,
     }
 }
 
+/// Is a particle wholly in the leaf, upper faces not counted? `margin` is 0 or half its size.
+template <int dim>
+bool
+is_inside_leaf(const Octree<dim>        &octree,
+               const unsigned int        leaf,
+               const dealii::Point<dim> &x,
+               const double              margin)
+{
+  bool inside = true;
+  for (unsigned int d = 0; d < dim; ++d)
+    inside = inside && x[d] - margin >= octree.lower(leaf)[d] &&
+             x[d] + margin < octree.lower(leaf)[d] + octree.size(leaf);
+  return inside;
+}
+
 /// Coordinates of a point in a leaf, 0 to 1.
 template <int dim>
 std::array<double, dim>

@@ -77,6 +77,22 @@ inside_cell(const Vector<dim, Pack8> &position,
   return inside;
 }
 
+/// Component d of what a cut particle gives to a record as momentum, over its mass [m/s].
+template <int dim, bool affine>
+inline double
+entry_velocity(const MaterialPoints<dim>            &points,
+               const std::size_t                     row,
+               const Vector<dim, double>            &velocity,
+               const typename CutPoints<dim>::Entry &entry,
+               const int                             d)
+{
+  double result = entry.value * velocity[d];
+  if constexpr (affine)
+    for (int e = 0; e < dim; ++e)
+      result += points.column(points.layout().affine + dim * d + e)[row] * entry.moment[e];
+  return result;
+}
+
 /// dim consecutive columns at one pack of rows.
 template <int dim>
 inline Vector<dim, Pack8>

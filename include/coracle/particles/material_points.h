@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/base/columns.h>
+#include <coracle/particles/cut_points.h>
 #include <coracle/particles/layout.h>
 #include <coracle/particles/leaf_means.h>
 
@@ -28,7 +29,8 @@ struct ParticleLedger
  * is a *stray* and takes a slow path in the kernels; one that left the rank
  * leaves a *hole* (mass 0), which the kernels add without effect; one that
  * arrived is appended behind the sorted rows and is a stray as well. Sorting
- * every ten steps or so is enough.
+ * every ten steps or so is enough. Rows that a sheet cuts off from some of
+ * their grid nodes take a slow path too.
  */
 template <int dim>
 class MaterialPoints
@@ -68,6 +70,9 @@ public:
 
   std::vector<Stray> strays;
 
+  /// In this step; they are left out of what is done with sorted rows and strays.
+  CutPoints<dim> cuts;
+
   /// Counting sort; drops holes and strays. `cell[row]` is the home of each row (any value for a
   /// hole).
   void sort(const unsigned int n_cells, const std::vector<int> &cell);
@@ -85,7 +90,10 @@ public:
 
   double      kinetic_energy() const;
   double      mass() const;
-  std::size_t memory_consumption() const { return columns.memory_consumption(); }
+  std::size_t memory_consumption() const
+  {
+    return columns.memory_consumption() + cuts.memory_consumption();
+  }
 
 private:
   std::string               body_name;

@@ -96,9 +96,17 @@ ContactCoupling<dim>::for_each_node(const MaterialPointSystem<dim> &points,
                                     const unsigned int              row,
                                     const Action                   &action) const
 {
-  const auto  &body   = *std::next(points.bodies.begin(), set);
-  const auto  &octree = points.octree;
-  const double half   = body.margin_of_shape() * body.points.column(Layout<dim>::size)[row];
+  const auto &body   = *std::next(points.bodies.begin(), set);
+  const auto &octree = points.octree;
+  const auto &cuts   = body.points.cuts;
+  if (cuts.contains(row))
+    {
+      const unsigned int i = cuts.find(row);
+      for (std::size_t e = cuts.begin[i]; e < cuts.begin[i + 1]; ++e)
+        action(cuts.entries[e].node, cuts.entries[e].value);
+      return;
+    }
+  const double half = body.margin_of_shape() * body.points.column(Layout<dim>::size)[row];
   for_each_piece(octree,
                  body.points.position(row),
                  half,
@@ -155,7 +163,7 @@ ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
                                        StructureSystem<dim>     &structure,
                                        const double              dt)
 {
-  const unsigned int             n_nodes = points.octree.n_nodes();
+  const unsigned int             n_nodes = points.split.n_records();
   std::vector<NodalField<dim> *> fields;
   for (auto &field : points.fields)
     fields.push_back(&field);
@@ -174,9 +182,8 @@ ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
       contact::Unknown<dim> unknown;
       unknown.velocity     = fields[field]->velocity(node);
       unknown.inverse_mass = fields[field]->inverse_mass(node);
-      unknown.key =
-        first_grid_key + (std::uint64_t(field) << field_shift) + points.octree.global_node(node);
-      unknown.owner = points.octree.node_owner(node);
+      unknown.key = first_grid_key + (std::uint64_t(field) << field_shift) + points.split.key(node);
+      unknown.owner = points.octree.node_owner(points.split.node(node));
       return unknown;
     });
   system.solve(structure.rigid_unknowns(), dt);

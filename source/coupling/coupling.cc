@@ -29,6 +29,10 @@ CouplingOptions<dim>::read(const Parameters &root)
   CouplingOptions result;
   result.safety_factor = root.section("Time").quantity("Safety factor");
   result.largest_step  = root.section("Time").quantity("Largest step");
+  // Contact on the grid's nodes knows one record of each.
+  const Parameters contact = root.section("Contact");
+  result.split_fields      = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
+                        contact.choice("Between fields") != "grid";
   const auto gravity   = root.list("Gravity");
   if (!gravity.empty() && gravity.size() != dim)
     throw root.error("Gravity",
@@ -61,9 +65,15 @@ Coupling<dim>::declare(Declaration &root)
   MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
   SolidBody<dim>::declare(body.when("Kind", "solid"));
   RigidBody<dim>::declare(body.when("Kind", "rigid"));
-  contact::ContactOptions::declare(
+  Declaration &contact =
     root.section("Contact",
-                 "Between material points and the surfaces of structures, and among structures."));
+                 "Between material points and the surfaces of structures, and among structures.");
+  contact::ContactOptions::declare(contact);
+  contact.flag(
+    "Split fields",
+    true,
+    "Grid nodes that a sheet cuts off from some particles have a velocity for each side, "
+    "so that what is on one side does not feel the other through it");
 }
 
 template <int dim>
@@ -95,6 +105,8 @@ Coupling<dim>::advance(const double end_time)
   const double left = end_time - current_time;
   dt                = left <= dt ? left : std::min(dt, 0.5 * left);
 
+  if (options.split_fields && structure.n_sheets() > 0)
+    timed("field split", [&] { points.split_fields(structure.publish_surface()); });
   timed("particles to grid", [&] {
     points.gather(current_time, dt);
     timed.count("particle", points.n_particles());

@@ -44,7 +44,9 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
            particle_weight<dim>(root.section("Bodies")),
            comm)
   , boundary(BoxBoundary<dim>::read(root.section("Grid")), octree)
+  , split(octree)
   , gravity(gravity)
+  , sides(octree)
 {
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
@@ -66,7 +68,7 @@ MaterialPointSystem<dim>::make_fields()
       if (found == field_names.end())
         {
           field_names.push_back(body.field_name);
-          fields.emplace_back(octree, boundary);
+          fields.emplace_back(octree, boundary, &split);
         }
     }
 }
@@ -102,6 +104,13 @@ MaterialPointSystem<dim>::stable_time_step() const
     }
   rate = mpi::max(rate, octree.triangulation.get_communicator());
   return rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::split_fields(const contact::Surface<dim> &surface)
+{
+  sides.update(surface, bodies, split);
 }
 
 template <int dim>
@@ -168,6 +177,15 @@ MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body,
             energy.external_work +=
               dt * force[d] * (points.column(Layout::velocity + d)[row] + 0.5 * dt * force[d] / m);
           }
+        if (points.cuts.contains(row))
+          {
+            const unsigned int i = points.cuts.find(row);
+            for (std::size_t e = points.cuts.begin[i]; e < points.cuts.begin[i + 1]; ++e)
+              for (int d = 0; d < dim; ++d)
+                records[points.cuts.entries[e].node][Gathered::force + d] +=
+                  points.cuts.entries[e].value * force[d];
+            continue;
+          }
         const double half = body.margin_of_shape() * points.column(Layout::size)[row];
         for_each_piece(octree,
                        x,
@@ -206,7 +224,12 @@ MaterialPointSystem<dim>::share_of_step(const MaterialPointBody<dim> &body,
 {
   if (share == 0)
     return 0;
-  const double rate = mpi::max(body.sweep.rate, octree.triangulation.get_communicator());
+  // The same for all bodies of a field: nodes give back what they got only if all take it alike.
+  double rate = 0;
+  for (const auto &other : bodies)
+    if (other.field == body.field)
+      rate = std::max(rate, other.sweep.rate);
+  rate = mpi::max(rate, octree.triangulation.get_communicator());
   return 1. - std::pow(1. - share, std::min(1., dt * rate));
 }
 
@@ -345,7 +368,8 @@ template <int dim>
 std::size_t
 MaterialPointSystem<dim>::memory_consumption() const
 {
-  std::size_t bytes = octree.memory_consumption();
+  std::size_t bytes =
+    octree.memory_consumption() + split.memory_consumption() + sides.memory_consumption();
   for (const auto &body : bodies)
     bytes += body.points.memory_consumption();
   for (const auto &f : fields)

@@ -11,6 +11,7 @@ template <int dim>
 struct CouplingOptions
 {
   double                 safety_factor, largest_step;
+  bool                   split_fields;
   dealii::Tensor<1, dim> gravity;
 
   static void            declare(Declaration &root);

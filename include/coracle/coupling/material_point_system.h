@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/coupling/material_point_body.h>
+#include <coracle/coupling/field_split.h>
 #include <coracle/grid/box_boundary.h>
 #include <coracle/grid/locate.h>
 #include <coracle/grid/nodal_field.h>
@@ -31,6 +31,8 @@ public:
   /// [s].
   double stable_time_step() const;
 
+  /// Particles and nodes on different sides of sheets are told apart for this step. Collective.
+  void split_fields(const contact::Surface<dim> &surface);
   /// Mass, momentum, internal and external force to the nodes of each field.
   void gather(const double time, const double dt);
   /// Velocities of nodes without contact.
@@ -66,6 +68,7 @@ public:
 
   Octree<dim>                       octree;
   BoxBoundary<dim>                  boundary;
+  NodeSplit<dim>                    split;
   std::list<MaterialPointBody<dim>> bodies;
   std::list<NodalField<dim>>        fields;
   std::vector<std::string>          field_names;
@@ -86,8 +89,9 @@ private:
   void add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
   void sort_when_due();
 
-  Books        energy;
-  unsigned int steps_since_sort = 0;
-  bool         renumbered       = true;
+  FieldSplit<dim> sides;
+  Books           energy;
+  unsigned int    steps_since_sort = 0;
+  bool            renumbered       = true;
 };
 } // namespace coracle

@@ -31,9 +31,9 @@ CouplingOptions<dim>::read(const Parameters &root)
   result.largest_step  = root.section("Time").quantity("Largest step");
   // Contact on the grid's nodes knows one record of each.
   const Parameters contact = root.section("Contact");
-  result.split_fields      = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
+  result.split_fields = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
                         contact.choice("Between fields") != "grid";
-  const auto gravity   = root.list("Gravity");
+  const auto gravity = root.list("Gravity");
   if (!gravity.empty() && gravity.size() != dim)
     throw root.error("Gravity",
                      "gravity has the wrong number of components",

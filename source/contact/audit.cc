@@ -8,8 +8,10 @@ namespace coracle::contact
 {
 namespace
 {
-/// The surface is thought this far, in facet sizes, from the side that the point belongs to.
-constexpr double thickness_of_nothing = 1e-9;
+/// So near, in facet sizes, a point is on the surface, and is then thought off it by so much.
+constexpr double thickness_of_nothing = 1e-9, step_off = 1e-8;
+/// How far triangles may be from a bilinear facet, in facet sizes.
+constexpr double tolerance = 1e-9;
 /// Meetings nearer in time than this part of the step are one.
 constexpr double same_time = 1e-7;
 
@@ -36,44 +38,83 @@ far_apart(const std::array<dealii::Point<dim>, 2>                               
   return result;
 }
 
+/// Calls action(simplex) for the simplices of a facet that are near the path.
+template <typename Action>
 void
-meet_facet(const std::array<dealii::Point<2>, 2>                &p,
-           const std::array<std::array<dealii::Point<2>, 2>, 2> &x,
-           const bool,
-           const double            shift,
-           const unsigned int      facet,
-           std::vector<PathEvent> &events)
+for_each_simplex(const std::array<dealii::Point<2>, 2> &,
+                 const std::array<std::array<dealii::Point<2>, 2>, 2> &x,
+                 const double,
+                 const Action &action)
 {
-  meet_simplex<2>(p, x, shift, facet, events);
+  action(x);
 }
 
-void
-meet_facet(const std::array<dealii::Point<3>, 2>                &p,
-           const std::array<std::array<dealii::Point<3>, 4>, 2> &x,
-           const bool                                            triangle,
-           const double                                          shift,
-           const unsigned int                                    facet,
-           std::vector<PathEvent>                               &events)
+using Quads = std::array<std::array<dealii::Point<3>, 4>, 2>;
+
+/// Facets are cut into four, again and again, at most this often.
+constexpr unsigned int most_cuts = 12;
+
+/// The quarter of a bilinear facet at corner k, whose corner k that is.
+Quads
+quarter(const Quads &x, const unsigned int k)
 {
-  if (triangle)
+  Quads result;
+  for (unsigned int t = 0; t < 2; ++t)
     {
-      meet_simplex<3>(
-        p, {{{{x[0][0], x[0][1], x[0][2]}}, {{x[1][0], x[1][1], x[1][2]}}}}, shift, facet, events);
+      const unsigned int next = (k + 1) % 4, opposite = (k + 2) % 4, previous = (k + 3) % 4;
+      result[t][k]        = x[t][k];
+      result[t][next]     = x[t][k] + 0.5 * (x[t][next] - x[t][k]);
+      result[t][previous] = x[t][k] + 0.5 * (x[t][previous] - x[t][k]);
+      result[t][opposite] =
+        dealii::Point<3>(0.25 * (x[t][0] + x[t][1]) + 0.25 * (x[t][2] + x[t][3]));
+    }
+  return result;
+}
+
+template <typename Action>
+void
+cut_quad(const std::array<dealii::Point<3>, 2> &p,
+         const Quads                           &x,
+         const double                           tolerance,
+         const unsigned int                     cuts,
+         const Action                          &action)
+{
+  if (far_apart<3>(p, x))
+    return;
+  // The triangles around the middle are off by a quarter of the corners' offset from a
+  // parallelogram.
+  double warp = 0;
+  for (const auto &v : x)
+    warp = std::max(warp, 0.25 * ((v[0] - v[1]) + (v[2] - v[3])).norm());
+  if (0.25 * warp > tolerance && cuts < most_cuts)
+    {
+      for (unsigned int k = 0; k < 4; ++k)
+        cut_quad(p, quarter(x, k), tolerance, cuts + 1, action);
       return;
     }
   std::array<dealii::Point<3>, 2> middle;
   for (unsigned int t = 0; t < 2; ++t)
-    for (const auto &v : x[t])
-      middle[t] += 0.25 * v;
+    middle[t] = dealii::Point<3>(0.25 * (x[t][0] + x[t][1]) + 0.25 * (x[t][2] + x[t][3]));
+  using Triangles = std::array<std::array<dealii::Point<3>, 3>, 2>;
   for (unsigned int k = 0; k < 4; ++k)
     {
       const unsigned int next = (k + 1) % 4;
-      meet_simplex<3>(p,
-                      {{{{x[0][k], x[0][next], middle[0]}}, {{x[1][k], x[1][next], middle[1]}}}},
-                      shift,
-                      facet,
-                      events);
+      action(Triangles{{{{x[0][k], x[0][next], middle[0]}}, {{x[1][k], x[1][next], middle[1]}}}});
     }
+}
+
+template <typename Action>
+void
+for_each_simplex(const std::array<dealii::Point<3>, 2> &p,
+                 const Quads                           &x,
+                 const double                           tolerance,
+                 const Action                          &action)
+{
+  using Triangles = std::array<std::array<dealii::Point<3>, 3>, 2>;
+  if (x[0][2] == x[0][3] && x[1][2] == x[1][3])
+    action(Triangles{{{{x[0][0], x[0][1], x[0][2]}}, {{x[1][0], x[1][1], x[1][2]}}}});
+  else
+    cut_quad(p, x, tolerance, 0, action);
 }
 
 /// Meetings at one time are one, and count by their sum; returns what is left.
@@ -124,37 +165,41 @@ template <int dim>
 unsigned int
 Audit<dim>::finish(const Surface<dim> &surface, const std::vector<PointSet<dim>> &points)
 {
-  unsigned int           n_found = 0;
+  last.clear();
   std::vector<PathEvent> events;
   for (unsigned int s = 0; s < points.size(); ++s)
     for (std::size_t i = 0; i < starts[s].size(); ++i)
       {
         const unsigned int                      point = candidates[s]->point[i];
         const std::array<dealii::Point<dim>, 2> p     = {{starts[s][i], points[s].point(point)}};
-        const CandidateRange                    range{candidates[s]->facet.data(),
-                                   candidates[s]->begin[i],
-                                   candidates[s]->begin[i + 1]};
+        CandidateRange                          range{candidates[s]->facet.data(),
+                             candidates[s]->begin[i],
+                             candidates[s]->begin[i + 1],
+                             0};
         for (unsigned int b = 0; b < surface.bodies.size(); ++b)
           {
             const auto &body = surface.bodies[b];
             events.clear();
-            meet_body(surface, b, p, side_of(body, points[s], point), range, events);
+            range.side = side_of(body, points[s], point);
+            meet_body(surface, b, p, range, events);
             unite(events);
             for (const auto &event : events)
               if (body.kind == SurfaceKind::sheet || event.direction > 0)
-                {
-                  ++n_found;
-                  if (first.size() < n_kept)
-                    first.push_back({points[s].id(point),
-                                     p[0] + event.time * (p[1] - p[0]),
-                                     event.time,
-                                     b,
-                                     surface.facets[event.facet].key});
-                }
+                last.push_back({points[s].id(point),
+                                p[0] + event.time * (p[1] - p[0]),
+                                event.time,
+                                b,
+                                surface.facets[event.facet].key,
+                                s,
+                                point,
+                                event.direction});
           }
       }
-  total += n_found;
-  return n_found;
+  for (const auto &crossing : last)
+    if (first.size() < n_kept)
+      first.push_back(crossing);
+  total += last.size();
+  return last.size();
 }
 
 template <int dim>
@@ -172,27 +217,50 @@ void
 Audit<dim>::meet_body(const Surface<dim>                      &surface,
                       const unsigned int                       body,
                       const std::array<dealii::Point<dim>, 2> &p,
-                      const int                                side,
                       const CandidateRange                    &range,
                       std::vector<PathEvent>                  &events) const
 {
+  // Facets near the path with what is on them, and the way off those that the point starts on.
+  struct Near
+  {
+    unsigned int                                                           facet;
+    std::array<std::array<dealii::Point<dim>, vertices_per_facet<dim>>, 2> x;
+    double                                                                 size;
+  };
+  static thread_local std::vector<Near> near;
+  near.clear();
+  dealii::Tensor<1, dim> off;
+  double                 smallest = std::numeric_limits<double>::max();
   for (std::size_t k = range.begin; k < range.end; ++k)
     {
       const auto &facet = surface.facets[range.facet[k]];
       if (facet.body != body)
         continue;
-      std::array<std::array<dealii::Point<dim>, vertices_per_facet<dim>>, 2> x;
+      Near one{range.facet[k], {}, 0};
       for (unsigned int v = 0; v < facet.nodes.size(); ++v)
         {
-          x[0][v] = nodes[facet.nodes[v]];
-          x[1][v] = surface.nodes[facet.nodes[v]].position;
+          one.x[0][v] = nodes[facet.nodes[v]];
+          one.x[1][v] = surface.nodes[facet.nodes[v]].position;
+          one.size    = std::max(one.size, one.x[0][v].distance(one.x[0][0]));
         }
-      if (far_apart<dim>(p, x))
+      if (far_apart<dim>(p, one.x))
         continue;
-      const bool triangle =
-        (facet.nodes[facet.nodes.size() - 1] == facet.nodes[facet.nodes.size() - 2]);
-      meet_facet(p, x, triangle, side * thickness_of_nothing, range.facet[k], events);
+      near.push_back(one);
+      for_each_simplex(p, one.x, tolerance * one.size, [&](const auto &simplex) {
+        const auto normal = normal_if_on<dim>(p[0], simplex[0], thickness_of_nothing * one.size);
+        if (normal.norm_square() > 0)
+          smallest = std::min(smallest, one.size);
+        off += normal;
+      });
     }
+  auto path = p;
+  if (off.norm_square() > 0)
+    path[0] += step_off * range.side * smallest / off.norm() * off;
+  for (const auto &one : near)
+    for_each_simplex(path, one.x, tolerance * one.size, [&](const auto &simplex) {
+      meet_simplex<dim>(
+        path, simplex, {range.side, thickness_of_nothing * one.size}, one.facet, events);
+    });
 }
 
 template class Audit<2>;

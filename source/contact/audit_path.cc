@@ -102,10 +102,23 @@ inside(const dealii::Point<3> &p, const std::array<dealii::Point<3>, 3> &x)
 } // namespace
 
 template <int dim>
+dealii::Tensor<1, dim>
+normal_if_on(const dealii::Point<dim>                  &p,
+             const std::array<dealii::Point<dim>, dim> &x,
+             const double                               distance)
+{
+  const auto   normal = normal_of(x);
+  const double size   = normal.norm();
+  if (size > 0 && std::abs((p - x[0]) * normal) <= distance * size && inside(p, x))
+    return normal / size;
+  return dealii::Tensor<1, dim>();
+}
+
+template <int dim>
 void
 meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
              const std::array<std::array<dealii::Point<dim>, dim>, 2> &x,
-             const double                                              shift,
+             const OnSurface                                          &on_surface,
              const unsigned int                                        facet,
              std::vector<PathEvent>                                   &events)
 {
@@ -116,17 +129,21 @@ meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
     return result;
   };
   // Volume spanned by the moving simplex and the moving point: a cubic through four values.
-  const double size   = normal_of(x[0]).norm();
-  const double offset = shift * std::pow(size, dim == 2 ? 2. : 1.5);
-  const auto   volume = [&](const double t) {
-    const auto y = simplex(t);
-    return (at(p[0], p[1], t) - y[0]) * normal_of(y) + offset;
+  const auto volume = [](const dealii::Point<dim>                  &q,
+                         const std::array<dealii::Point<dim>, dim> &y) {
+    return (q - y[0]) * normal_of(y);
   };
-  double       f0 = volume(0);
-  const double f1 = volume(1. / 3), f2 = volume(2. / 3), f3 = volume(1);
-  // On the surface, and no side known: it has come from where it does not go.
-  if (shift == 0 && std::abs(f0) <= 1e-9 * std::pow(size, dim == 2 ? 2. : 1.5))
-    f0 = std::copysign(1e-9 * std::pow(size, dim == 2 ? 2. : 1.5), -f3);
+  const auto   along = [&](const double t) { return volume(at(p[0], p[1], t), simplex(t)); };
+  double       f0 = volume(p[0], x[0]), f3 = volume(p[1], x[1]);
+  const double f1 = along(1. / 3), f2 = along(2. / 3);
+  // On the surface at an end of the step: on the side that the point belongs to. If there is none,
+  // it has come from where it does not go.
+  const double near0 = on_surface.distance * normal_of(x[0]).norm(),
+               near1 = on_surface.distance * normal_of(x[1]).norm();
+  if (on_surface.side != 0 && std::abs(f3) <= near1)
+    f3 = on_surface.side * near1;
+  if (on_surface.side == 0 && std::abs(f0) <= near0)
+    f0 = std::copysign(near0, -f3);
   // A cubic that differs so little at four places has no zero between them.
   const double low = std::min({f0, f1, f2, f3}), high = std::max({f0, f1, f2, f3});
   if ((low > 0 && high < 4 * low) || (high < 0 && low > 4 * high))
@@ -150,14 +167,18 @@ meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
     }
 }
 
+template dealii::Tensor<1, 2>
+normal_if_on<2>(const dealii::Point<2> &, const std::array<dealii::Point<2>, 2> &, const double);
+template dealii::Tensor<1, 3>
+normal_if_on<3>(const dealii::Point<3> &, const std::array<dealii::Point<3>, 3> &, const double);
 template void meet_simplex<2>(const std::array<dealii::Point<2>, 2> &,
                               const std::array<std::array<dealii::Point<2>, 2>, 2> &,
-                              const double,
+                              const OnSurface &,
                               const unsigned int,
                               std::vector<PathEvent> &);
 template void meet_simplex<3>(const std::array<dealii::Point<3>, 2> &,
                               const std::array<std::array<dealii::Point<3>, 3>, 2> &,
-                              const double,
+                              const OnSurface &,
                               const unsigned int,
                               std::vector<PathEvent> &);
 } // namespace coracle::contact

@@ -13,6 +13,8 @@ namespace
 constexpr double same_place = 1e-8;
 /// Nearer to an edge or vertex than this, in facet sizes, the offset has no reliable direction.
 constexpr double on_surface = 1e-7;
+/// Nearer than this, in facet sizes, a point is on the surface.
+constexpr double off_surface = 1e-9;
 } // namespace
 
 template <int dim>
@@ -258,17 +260,23 @@ LocalSearch<dim>::own_side(const PointSet<dim> &points,
   const auto &body = surface->bodies[surface->facets[pair.facet].body];
   if (body.kind == SurfaceKind::closed)
     return 1;
-  double &kept = points.side[body.sheet][point];
-  if (nearest.pseudonormal.rim && pair.nearest.distance_square > 0)
+  double      &kept = points.side[body.sheet][point];
+  const double tiny = off_surface * balls[pair.facet].radius;
+  if (nearest.pseudonormal.rim && pair.nearest.distance_square > tiny * tiny)
     {
       kept = 0;
       return 0;
     }
-  if (kept == 0)
+  if (has_passed(kept) && nearest.side * kept >= 0)
+    kept = (kept < 0 ? -1 : 1); // it is back
+  // Nothing passes unnoticed (audit), so a point is where it belongs, on whatever side that is: a
+  // step may take it round the rim, and at a T-junction sides differ from facet to facet.
+  else if (!has_passed(kept) && nearest.side != 0)
+    kept = nearest.side;
+  else if (kept == 0)
     {
-      kept = nearest.side;
-      if (nearest.side == 0) // on the sheet itself: the side it comes from
-        kept = (relative_velocity(points, pair) * nearest.pseudonormal.normal > 0 ? -1 : 1);
+      // On the sheet itself: the side it comes from.
+      kept = (relative_velocity(points, pair) * nearest.pseudonormal.normal > 0 ? -1 : 1);
     }
   return kept < 0 ? -1 : 1;
 }
@@ -331,8 +339,15 @@ LocalSearch<dim>::contacts_of_body(const PointSet<dim>       &points,
   const unsigned int point   = pairs[nearest.pair].point;
   const auto         x_p     = points.point(point);
   const int          own     = own_side(points, point, nearest);
+  const auto        &whole   = surface->bodies[surface->facets[pairs[nearest.pair].facet].body];
+  // What faces away of a closed body is hidden; a sheet has no such side unless the point passed
+  // it.
+  const bool one_sided =
+    whole.kind == SurfaceKind::closed || has_passed(points.side[whole.sheet][point]);
   // At a rim there is no other side; a point exactly on the surface has not passed.
-  const auto passed = [own](const Minimum &m) { return !m.pseudonormal.rim && m.side * own < 0; };
+  const auto passed = [own, one_sided](const Minimum &m) {
+    return one_sided && !m.pseudonormal.rim && m.side * own < 0;
+  };
 
   for (const auto &minimum : minima)
     {
@@ -345,8 +360,11 @@ LocalSearch<dim>::contacts_of_body(const PointSet<dim>       &points,
       const auto   offset = x_p - pair.nearest.place;
       const double length = offset.norm();
       if (pair.nearest.region == Region::interior || length < on_surface * balls[pair.facet].radius)
-        contact.normal =
-          (own != 0 ? own : (minimum.side < 0 ? -1 : 1)) * minimum.pseudonormal.normal;
+        {
+          const bool by_place = (own == 0 || !one_sided) && minimum.side != 0;
+          const int  side     = (by_place || own == 0 ? minimum.side : own);
+          contact.normal      = (side < 0 ? -1 : 1) * minimum.pseudonormal.normal;
+        }
       else
         contact.normal = (passed(minimum) ? -1 : 1) * offset / length;
       contact.gap = offset * contact.normal;

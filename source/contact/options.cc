@@ -75,6 +75,11 @@ ContactOptions::declare(Declaration &section)
       50,
       "Sweeps there and back of the position correction after which it goes on in the next step",
       1);
+  section.when("Law", "split")
+    .flag("Continuous check",
+          true,
+          "Follow particles through the step and change the ends of paths that would come too near "
+          "to a surface, or through it");
   section.flag("Structure contact",
                true,
                "Structures meet each other, and themselves where Self contact says so; false: they "
@@ -147,6 +152,7 @@ ContactOptions::ContactOptions(const Parameters &section)
   if (law == Law::split)
     {
       position_correction = section.flag("Position correction");
+      continuous_check    = section.flag("Continuous check");
       position_iterations = section.integer("Maximum position iterations");
     }
 }

@@ -208,6 +208,22 @@ ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
 
 template <int dim>
 void
+ContactCoupling<dim>::resolve_in_time(MaterialPointSystem<dim> &points,
+                                      StructureSystem<dim>     &structure)
+{
+  typename contact::ContinuousCheck<dim>::Ends ends(sets.size());
+  unsigned int                                 s = 0;
+  for (auto &body : points.bodies)
+    {
+      for (int d = 0; d < dim; ++d)
+        ends[s][d] = body.points.column(Layout<dim>::next_position + d);
+      ++s;
+    }
+  system.resolve_in_time(structure.publish_surface(), sets, ends);
+}
+
+template <int dim>
+void
 ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure)
 {
   // The sets as they were searched, at the places the particles are about to take.

@@ -125,6 +125,7 @@ Coupling<dim>::advance(const double end_time)
     structure.move(dt);
     timed.count("particle", points.n_particles());
   });
+  timed("continuous check", [&] { contacts.resolve_in_time(points, structure); });
   timed("penetration audit", [&] { contacts.audit(points, structure); });
 
   current_time += dt;

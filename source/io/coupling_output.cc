@@ -367,6 +367,7 @@ CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
   report.dt                        = coupling.last_step();
   report.penetrations              = coupling.contacts.n_penetrations();
   report.contacts                  = coupling.contacts.report().n_contacts;
+  report.resolved_in_time          = coupling.contacts.report().n_resolved;
   report.worst_gap                 = coupling.worst_gap;
   report.contact_steps             = coupling.contact_steps;
   report.unconverged_contact_steps = coupling.unconverged_contact_steps;

@@ -38,6 +38,7 @@ add_standard_columns(Statistics &statistics, const std::vector<std::string> &bod
   statistics.add_column("dt", "s");
   statistics.add_column("penetrations", "");
   statistics.add_column("contacts", "");
+  statistics.add_column("contact.resolved_in_time", "");
   statistics.add_column("worst_gap", "m");
   statistics.add_column("contact_steps", "");
   statistics.add_column("unconverged_contact_steps", "");
@@ -74,6 +75,7 @@ set_standard_columns(Statistics &statistics, const Report<dim> &report)
   statistics.set("dt", report.dt);
   statistics.set("penetrations", report.penetrations);
   statistics.set("contacts", report.contacts);
+  statistics.set("contact.resolved_in_time", report.resolved_in_time);
   statistics.set("worst_gap", report.worst_gap);
   statistics.set("contact_steps", report.contact_steps);
   statistics.set("unconverged_contact_steps", report.unconverged_contact_steps);

@@ -105,9 +105,9 @@ sheets()
       deallog << "fold from " << (y < 1 ? "below" : "above") << ": " << found.size()
               << " contacts, side " << side << ", gap " << found[0].gap << std::endl;
       // A point that has passed belongs where it came from.
-      side            = -side;
+      side            = -2 * side;
       const auto back = contacts_at<2>(sheet, P2(0.001, y), 0.1, &side);
-      deallog << "  passed: " << back.size() << ", side " << side << ", gap " << back[0].gap
+      deallog << "  passed: " << back.size() << ", side " << 0.5 * side << ", gap " << back[0].gap
               << ", normal y " << back[0].normal[1] << std::endl;
     }
   double     side = 1;

@@ -17,20 +17,26 @@ struct Crossing
   double             time;
   unsigned int       body;
   std::uint64_t      facet_key;
+  /// Index of the point set and of the point in it, until points are renumbered.
+  unsigned int set, point;
+  /// The side of the facet that the point left: +1 where the normal points.
+  int side;
 };
 
 /**
  * Independent check that no point passes through a surface: the straight path of
  * each candidate point from the start to the end of a step against the facets,
  * whose nodes move on straight paths likewise. Shares no code with the local
- * search or the solver; bilinear facets are taken as four triangles around their
- * middle.
+ * search or the solver. A bilinear facet is taken as four triangles around its
+ * middle, or the parts of it near the path are, so that no triangle is farther
+ * from it than 1e-9 of its size.
  *
  * Where the path meets a facet's moving plane is a root of a quadratic (2-D) or
  * cubic (3-D) in time. A closed body is crossed from outside only, a sheet both
- * ways. The surface is thought moved by 1e-9 of the facet's size to the side
- * that the point does not belong to: a point that starts exactly on the surface
- * and goes in is counted, one that ends on it is not until it goes on. Facets
+ * ways. A point nearer than 1e-9 of the facet's size at an end of the step is
+ * still on the side that it belongs to: one that starts exactly on the surface
+ * and goes in is counted, one that ends on it is not until it goes on. It is
+ * thought moved off the facets it starts on by ten times that. Facets
  * that meet at the edge or vertex where a path goes through report it at the same
  * time and count once; opposite ways cancel (the path only touches).
  */
@@ -52,6 +58,9 @@ public:
   unsigned long                     n_crossings() const { return total; }
   const std::vector<Crossing<dim>> &first_crossings() const { return first; }
 
+  /// Of the last step, on this rank.
+  const std::vector<Crossing<dim>> &crossings() const { return last; }
+
   static constexpr unsigned int n_kept = 5;
 
 private:
@@ -60,11 +69,12 @@ private:
   {
     const unsigned int *facet;
     std::size_t         begin, end;
+    /// That the point belongs to.
+    int side;
   };
   void meet_body(const Surface<dim>                      &surface,
                  const unsigned int                       body,
                  const std::array<dealii::Point<dim>, 2> &p,
-                 const int                                side,
                  const CandidateRange                    &range,
                  std::vector<PathEvent>                  &events) const;
   /// -1, +1, or 0 where the point may belong to either.
@@ -74,7 +84,7 @@ private:
   std::vector<dealii::Point<dim>>              nodes;
   std::vector<std::vector<dealii::Point<dim>>> starts;
   std::vector<const Candidates *>              candidates;
-  std::vector<Crossing<dim>>                   first;
+  std::vector<Crossing<dim>>                   first, last;
   unsigned long                                total = 0;
 };
 
@@ -87,16 +97,29 @@ struct PathEvent
   unsigned int facet;
 };
 
+/// What becomes of a point that starts or ends on the surface.
+struct OnSurface
+{
+  /// That it belongs to, -1, +1 or 0; and how near to the plane is on it [m].
+  int    side;
+  double distance;
+};
+
+/// Unit normal of the simplex if the point is on it, nearer than `distance`; else 0.
+template <int dim>
+dealii::Tensor<1, dim> normal_if_on(const dealii::Point<dim>                  &p,
+                                    const std::array<dealii::Point<dim>, dim> &x,
+                                    const double                               distance);
+
 /**
  * Meetings of a point that moves straight from p[0] to p[1] with a simplex
  * (segment, triangle) whose vertices move straight from x[0] to x[1].
- * @param shift the simplex is thought moved along its normal by this part of its size
  * Appends to `events`.
  */
 template <int dim>
 void meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
                   const std::array<std::array<dealii::Point<dim>, dim>, 2> &x,
-                  const double                                              shift,
+                  const OnSurface                                          &on_surface,
                   const unsigned int                                        facet,
                   std::vector<PathEvent>                                   &events);
 } // namespace coracle::contact

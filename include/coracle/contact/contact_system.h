@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/contact/audit.h>
+#include <coracle/contact/continuous_check.h>
 #include <coracle/contact/facet_exchange.h>
 #include <coracle/contact/local_search.h>
 #include <coracle/contact/row_builder.h>
@@ -21,6 +22,11 @@ struct ContactReport
   double work = 0, energy_fed = 0;
   /// Points that went through a surface since the start, found by the audit.
   unsigned long n_penetrations = 0;
+  /// Since the start: ends of points that the continuous check changed, those of them for which it
+  /// found no free way, and points of this rank that would have gone beyond their candidates.
+  unsigned long n_resolved = 0, n_failed = 0, n_held = 0;
+  /// The greatest change of an end in this step [m].
+  double largest_shift = 0;
   /// How often candidates were looked for anew, and how many pairs of point and facet this rank
   /// keeps.
   unsigned int  n_rebuilds   = 0;
@@ -119,6 +125,17 @@ public:
   const std::vector<RigidImpulse> &rigid_impulses() const { return rigid_sums; }
 
   /**
+   * Collective. After all has moved and before positions are taken: changes the
+   * ends of points that would come too near to a facet, see ContinuousCheck.
+   * @param owned  as for find(), nodes at the end of the step
+   * @param points as for find(), where they start
+   * @param ends   columns of where points end
+   */
+  void resolve_in_time(const Surface<dim>                        &owned,
+                       const std::vector<PointSet<dim>>          &points,
+                       const typename ContinuousCheck<dim>::Ends &ends);
+
+  /**
    * Collective. After all has moved, and before points are renumbered: counts
    * points whose path went through a facet, see Audit.
    * @param owned as for find(), nodes at the end of the step
@@ -145,20 +162,24 @@ private:
   /// What the local search cannot know of contacts of surface nodes, from the first of them on;
   /// returns the end of those that anything can move.
   std::size_t complete_node_contacts(const PointSet<dim> &points, const std::size_t first);
+  void        limit_travel(const Surface<dim>                        &owned,
+                           const std::vector<PointSet<dim>>          &points,
+                           const typename ContinuousCheck<dim>::Ends &ends);
   void        sum_up(const std::vector<RigidUnknown<dim>> &rigid);
 
-  ContactOptions     options;
-  MPI_Comm           communicator;
-  FacetExchange<dim> facets;
-  GlobalSearch<dim>  search;
-  LocalSearch<dim>   local_search;
-  RowBuilder<dim>    rows;
-  Solver<dim>        solver;
-  Audit<dim>         auditor;
+  ContactOptions       options;
+  MPI_Comm             communicator;
+  FacetExchange<dim>   facets;
+  GlobalSearch<dim>    search;
+  LocalSearch<dim>     local_search;
+  RowBuilder<dim>      rows;
+  Solver<dim>          solver;
+  Audit<dim>           auditor;
+  ContinuousCheck<dim> in_time;
 
   bool changed = true;
   /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].
-  double                          reach = 0, used = 0;
+  double                          reach = 0, used = 0, used_before = 0;
   std::vector<dealii::Point<dim>> positions_at_search;
 
   std::vector<Contact<dim>>                 list;

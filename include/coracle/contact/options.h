@@ -65,6 +65,9 @@ struct ContactOptions
   /// Remove remaining depth by moving positions (law split).
   bool         position_correction = true;
   unsigned int position_iterations = 50;
+  /// Follow points through the step and change the ends of those that would come too near; only
+  /// with law split and contacts nearest on the surface.
+  bool continuous_check = true;
   /// Distance by which candidates reach farther than needed, in contact distances R (largest point
   /// radius plus half thickness) [1].
   double         skin            = 1;

@@ -4,6 +4,10 @@
 #include <coracle/contact/surface.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace coracle::contact
 {
@@ -49,8 +53,9 @@ struct PointSet
 
   /**
    * Per sheet (SurfaceBody::sheet) a column of the side that a point belongs
-   * to: -1, +1, or 0 while it is outside the band. The caller stores it with
-   * the point; contact reads and writes it.
+   * to: -1, +1, or 0 while it is outside the band; twice that once it has passed
+   * to the other side. The caller stores it with the point; contact reads and
+   * writes it.
    */
   std::vector<double *> side;
 
@@ -105,4 +110,11 @@ struct PointSet
 
   std::uint64_t id(const unsigned int i) const { return ids == nullptr ? id_offset + i : ids[i]; }
 };
+
+/// Is a point with this entry of a sheet's side column on the side that it does not belong to?
+inline bool
+has_passed(const double side)
+{
+  return std::abs(side) > 1.5;
+}
 } // namespace coracle::contact

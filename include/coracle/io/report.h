@@ -82,7 +82,8 @@ struct Report
   std::uint64_t contacts     = 0; ///< in the last step
   /// Smallest gap - contact distance over the contacts of the steps since the last row; 0 if none
   /// [m].
-  double        worst_gap     = 0;
+  std::uint64_t resolved_in_time = 0; ///< ends of paths changed by the continuous check so far
+  double        worst_gap        = 0;
   std::uint64_t contact_steps = 0, unconverged_contact_steps = 0; ///< so far
   std::uint64_t particles         = 0;                            ///< present
   std::uint64_t particles_created = 0, particles_removed = 0, particles_converted = 0;

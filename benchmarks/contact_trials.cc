@@ -8,7 +8,7 @@
 #include <iostream>
 #include <map>
 
-#include "../tests/contact/trial_scene.h"
+#include "../tests/contact/trial_run.h"
 
 namespace
 {

@@ -4,7 +4,7 @@
 // on the surface at the start, speeds from 1 to 3000 m/s (benchmarks/contact_trials runs any number
 // of them).
 
-#include "trial_scene.h"
+#include "trial_run.h"
 
 #include "../tests.h"
 

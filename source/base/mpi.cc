@@ -57,7 +57,8 @@ rethrow(const Kind kind, const std::vector<std::string> &texts)
   throw std::runtime_error(texts[0]);
 }
 
-constexpr int first_tag = 4711;
+// Probes for any sender: no other message may have these tags.
+constexpr int first_tag = 4901;
 
 /// Two exchanges that follow each other must not take each other's messages: a rank that has
 /// left the first one may already send while another still listens. It cannot be two ahead.

@@ -19,13 +19,11 @@ run(const unsigned long first, const unsigned long last)
       const auto        outcome = scene.run();
       sum.crossings += outcome.crossings;
       sum.contacts += outcome.contacts;
-      sum.resolved += outcome.resolved;
       if (outcome.crossings > 0)
         deallog << "seed " << seed << ": " << outcome.crossings << " crossings" << std::endl;
     }
   deallog << dim << "-D: crossings " << sum.crossings << ", enough contacts "
-          << (sum.contacts > 1000 * (last - first)) << ", some ends changed " << (sum.resolved > 0)
-          << std::endl;
+          << (sum.contacts > 1000 * (last - first)) << std::endl;
 }
 
 int
@@ -33,6 +31,6 @@ main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   mpi_initlog();
-  run<2>(1, 24);
-  run<3>(1, 12);
+  run<2>(1, 8);
+  run<3>(1, 2);
 }

@@ -85,7 +85,7 @@ further(const std::string &points)
 
 const std::string polyline = "set Type = polyline\n set Points = ";
 
-/// Half a turn over n quadrilaterals.
+/// Half a turn over n pairs of triangles.
 void
 moebius_strip(const std::string &name, const unsigned int n)
 {
@@ -98,16 +98,18 @@ moebius_strip(const std::string &name, const unsigned int n)
         const double a = 2 * dealii::numbers::PI * i / n, r = 1 + half * std::cos(a / 2);
         file << r * std::cos(a) << ' ' << r * std::sin(a) << ' ' << half * std::sin(a / 2) << '\n';
       }
-  file << "CELLS " << n << ' ' << 5 * n << '\n';
+  file << "CELLS " << 2 * n << ' ' << 8 * n << '\n';
   for (unsigned int i = 0; i < n; ++i)
     {
       // The last one closes with its sides exchanged.
       const unsigned int a = 2 * i, b = 2 * ((i + 1) % n), swap = (i + 1 == n ? 1 : 0);
-      file << "4 " << a << ' ' << b + swap << ' ' << b + 1 - swap << ' ' << a + 1 << '\n';
+      const unsigned int next = b + swap, opposite = b + 1 - swap;
+      file << "3 " << a << ' ' << next << ' ' << opposite << '\n'
+           << "3 " << a << ' ' << opposite << ' ' << a + 1 << '\n';
     }
-  file << "CELL_TYPES " << n << '\n';
-  for (unsigned int i = 0; i < n; ++i)
-    file << "9\n";
+  file << "CELL_TYPES " << 2 * n << '\n';
+  for (unsigned int i = 0; i < 2 * n; ++i)
+    file << "5\n";
 }
 
 int

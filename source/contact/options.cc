@@ -28,10 +28,10 @@ read_local_search(const std::string &name)
          : name == "perpendicular foot" ? LocalMethod::perpendicular_foot
                                         : LocalMethod::nearest_on_surface;
 }
-} // namespace
 
+/// Where particles, structures and velocity fields meet.
 void
-ContactOptions::declare(Declaration &section)
+declare_methods(Declaration &section)
 {
   section.choice("Method",
                  "surface",
@@ -52,6 +52,12 @@ ContactOptions::declare(Declaration &section)
               "mu",
               "Coulomb coefficient between material point bodies of different velocity fields",
               0);
+}
+
+/// What contacts ask for.
+void
+declare_laws(Declaration &section)
+{
   section.quantity(
     "Friction", "0", "1", "mu", "Coulomb coefficient of surfaces that do not give their own", 0);
   section.choice(
@@ -80,6 +86,14 @@ ContactOptions::declare(Declaration &section)
           true,
           "Follow particles through the step and change the ends of paths that would come too near "
           "to a surface, or through it");
+}
+} // namespace
+
+void
+ContactOptions::declare(Declaration &section)
+{
+  declare_methods(section);
+  declare_laws(section);
   section.flag("Structure contact",
                true,
                "Structures meet each other, and themselves where Self contact says so; false: they "

@@ -4,6 +4,7 @@
 #include <coracle/contact/delassus.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace coracle::contact
 {
@@ -14,26 +15,26 @@ namespace coracle::contact
  * @param u relative velocity now [m/s]
  */
 template <int dim>
-dealii::Tensor<1, dim>
+inline Lanes<dim>
 next_impulse(const typename Delassus<dim>::Row &row,
-             const dealii::Tensor<1, dim>      &impulse,
-             dealii::Tensor<1, dim>             u,
+             const Lanes<dim>                  &impulse,
+             const Lanes<dim>                  &u,
              const double                       target,
              const bool                         friction)
 {
-  const double old_normal = impulse * row.normal;
+  const double old_normal = dot<dim>(impulse, row.normal);
   const double normal =
-    std::max(0., old_normal - (u * row.normal - target) / row.normal_inverse_mass);
+    std::max(0., old_normal - (dot<dim>(u, row.normal) - target) * row.normal_mass);
   if (!friction || row.friction == 0 || normal == 0)
     return normal * row.normal;
 
   // Friction sees what the normal impulse has changed.
-  u += (normal - old_normal) * row.normal_response;
-  dealii::Tensor<1, dim> tangential = impulse - old_normal * row.normal;
-  tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
-  const double limit = row.friction * normal, size = tangential.norm();
-  if (size > limit)
-    tangential *= limit / size;
+  const Lanes<dim> later      = u + (normal - old_normal) * row.normal_response;
+  Lanes<dim>       tangential = impulse - old_normal * row.normal;
+  tangential -= (later - dot<dim>(later, row.normal) * row.normal) / row.tangential_inverse_mass;
+  const double limit = row.friction * normal, square = dot<dim>(tangential, tangential);
+  if (square > limit * limit)
+    tangential *= limit / std::sqrt(square);
   return normal * row.normal + tangential;
 }
 } // namespace coracle::contact

@@ -11,6 +11,7 @@ namespace
 template <int dim>
 dealii::Tensor<1, dim>
 increment(const typename Delassus<dim>::Row        &row,
+          const double                              friction,
           const typename Delassus<dim>::TrueMasses &masses,
           const dealii::Tensor<1, dim>             &u,
           const double                              wanted)
@@ -20,10 +21,10 @@ increment(const typename Delassus<dim>::Row        &row,
   if (more <= 0)
     return dealii::Tensor<1, dim>();
   dealii::Tensor<1, dim> result = more * normal;
-  if (row.friction > 0)
+  if (row.has_friction)
     {
       auto         tangential = -(u - approach * normal) / masses.tangential;
-      const double limit = row.friction * more, size = tangential.norm();
+      const double limit = friction * more, size = tangential.norm();
       if (size > limit)
         tangential *= limit / size;
       result += tangential;
@@ -53,8 +54,9 @@ solve_blended(Delassus<dim>                       &delassus,
       for (std::size_t c = 0; c < rows.size(); ++c)
         if (active[c] && !rows[c].fixed)
           {
-            const auto u    = to_tensor<dim>(delassus.relative_velocity(rows[c], before));
-            const auto step = increment<dim>(rows[c], masses[c], u, wanted[c]);
+            const auto u = to_tensor<dim>(delassus.relative_velocity(rows[c], before));
+            const auto step =
+              increment<dim>(rows[c], delassus.sliding(c).friction, masses[c], u, wanted[c]);
             report.residual = std::max(report.residual, step.norm() * masses[c].normal);
             impulses[c] += step;
             delassus.apply(rows[c], to_lanes<dim>(step), v);

@@ -3,6 +3,7 @@
 #include <coracle/contact/messages.h>
 
 #include <cmath>
+#include <limits>
 
 namespace coracle::contact
 {
@@ -49,7 +50,8 @@ Delassus<dim>::apply_rigid(const Row           &row,
   const int b = row.rigid_body[side];
   for (int d = 0; d < dim; ++d)
     v.rigid[b][d] += sign(side) * rigid_inverse_mass[b][d] * impulse[d];
-  v.spin[b] += sign(side) * (rigid_inverse_inertia[b] * torque(arms[row.arms][side], impulse));
+  v.spin[b] +=
+    sign(side) * (rigid_inverse_inertia[b] * torque(arms[&row - list.data()][side], impulse));
 }
 
 template <int dim>
@@ -59,16 +61,16 @@ Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split)
   Vector result;
   for (std::size_t e = row.begin; e < row.begin + row.n_entries; ++e)
     {
-      const unsigned int i = entries[e].unknown;
+      const unsigned int i = entry_unknown[e];
       const double       factor =
-        entries[e].weight * entries[e].weight / (split ? 1 : shared.multiplicity(i));
+        entry_weight[e] * entry_weight[e] / (split ? 1 : shared.multiplicity(i));
       for (int d = 0; d < dim; ++d)
         result[d] += factor * inverse_mass[i][d] * impulse[d];
     }
   for (unsigned int side = 0; side < 2; ++side)
     if (const int b = row.rigid_body[side]; b >= 0)
       {
-        const Vector &arm = arms[row.arms][side];
+        const Vector &arm = arms[&row - list.data()][side];
         const double  n   = (split ? 1 : rigid_multiplicity[b]);
         for (int d = 0; d < dim; ++d)
           result[d] += rigid_inverse_mass[b][d] / n * impulse[d];
@@ -107,30 +109,47 @@ Delassus<dim>::tangential_inverse_mass(const Row &row, const bool split) const
 
 template <int dim>
 void
-Delassus<dim>::prepare(Row &row, TrueMasses &masses) const
+Delassus<dim>::prepare(Row &row, Sliding &slide, TrueMasses &masses) const
 {
   const Vector normal          = to_tensor<dim>(row.normal);
   const Vector normal_response = response(row, normal);
-  row.normal_response          = to_lanes<dim>(normal_response);
   row.normal_inverse_mass      = normal * normal_response;
   masses.normal                = normal * response(row, normal, false);
-  if (row.friction > 0)
+  if (slide.friction > 0)
     {
-      row.tangential_inverse_mass = tangential_inverse_mass(row, true);
-      masses.tangential           = tangential_inverse_mass(row, false);
+      slide.normal_response         = to_lanes<dim>(normal_response);
+      slide.tangential_inverse_mass = tangential_inverse_mass(row, true);
+      masses.tangential             = tangential_inverse_mass(row, false);
     }
   double largest = 0;
   for (std::size_t e = row.begin; e < row.begin + row.n_entries; ++e)
-    largest += entries[e].weight * entries[e].weight *
-               to_tensor<dim>(inverse_mass[entries[e].unknown]).norm();
+    largest +=
+      entry_weight[e] * entry_weight[e] * to_tensor<dim>(inverse_mass[entry_unknown[e]]).norm();
   for (const int b : row.rigid_body)
     if (b >= 0)
       largest += rigid_inverse_mass[b].norm();
   row.fixed       = !(row.normal_inverse_mass > 1e-10 * largest);
   row.normal_mass = (row.fixed ? 0. : 1. / row.normal_inverse_mass);
   // Where both sides' sliding is prescribed, friction changes nothing.
-  if (row.friction > 0 && !(row.tangential_inverse_mass > 1e-10 * largest))
-    row.friction = 0;
+  if (slide.friction > 0 && !(slide.tangential_inverse_mass > 1e-10 * largest))
+    slide.friction = 0;
+  row.has_friction = (slide.friction > 0);
+}
+
+template <int dim>
+void
+Delassus<dim>::take_entries(const Rows &rows)
+{
+  Assert(rows.entries.size() < std::numeric_limits<unsigned int>::max(),
+         dealii::ExcMessage("Too many entries for one rank"));
+  entry_unknown.resize(rows.entries.size());
+  entry_weight.resize(rows.entries.size());
+  for (std::size_t side = 0; side + 1 < rows.begin.size(); ++side)
+    for (std::size_t e = rows.begin[side]; e < rows.begin[side + 1]; ++e)
+      {
+        entry_unknown[e] = rows.entries[e].unknown;
+        entry_weight[e]  = (side % 2 == 0 ? 1 : -1) * rows.entries[e].weight;
+      }
 }
 
 template <int dim>
@@ -182,28 +201,24 @@ Delassus<dim>::reinit(const std::vector<Contact<dim>>      &contacts,
       predicted.nodes[i] = to_lanes<dim>(unknowns[i].velocity);
     }
 
-  entries = rows.entries;
+  take_entries(rows);
   list.resize(contacts.size());
+  slidings.resize(contacts.size());
   true_masses.resize(contacts.size());
-  arms.clear();
+  arms.resize(rigid.empty() ? 0 : contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
-      for (std::size_t e = rows.begin[2 * c + 1]; e < rows.begin[2 * c + 2]; ++e)
-        entries[e].weight *= -1;
-      Row &row       = list[c];
-      row.begin      = rows.begin[2 * c];
-      row.n_entries  = rows.begin[2 * c + 2] - row.begin;
-      row.rigid_body = rows.rigid_body[c];
-      row.normal     = to_lanes<dim>(contacts[c].normal);
-      row.friction   = contacts[c].friction;
-      row.arms       = arms.size();
-      if (row.rigid_body[0] >= 0 || row.rigid_body[1] >= 0)
-        arms.emplace_back();
+      Row &row             = list[c];
+      row.begin            = rows.begin[2 * c];
+      row.n_entries        = rows.begin[2 * c + 2] - row.begin;
+      row.rigid_body       = rows.rigid_body[c];
+      row.normal           = to_lanes<dim>(contacts[c].normal);
+      slidings[c].friction = contacts[c].friction;
       for (unsigned int side = 0; side < 2; ++side)
         if (const int b = row.rigid_body[side]; b >= 0)
-          arms.back()[side] =
+          arms[c][side] =
             contacts[c].place + contacts[c].gap * contacts[c].normal - rigid[b].centre;
-      prepare(row, true_masses[c]);
+      prepare(row, slidings[c], true_masses[c]);
     }
 }
 

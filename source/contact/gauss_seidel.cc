@@ -29,10 +29,11 @@ GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
       const auto       &row = rows[c];
       if (row.fixed)
         continue;
-      const Lanes<dim> u      = delassus.relative_velocity(row, v);
-      const Lanes<dim> next   = next_impulse<dim>(row, impulses[c], u, target[c], friction);
-      const Lanes<dim> step   = next - impulses[c];
-      const double     square = dot<dim>(step, step);
+      const auto *const slide  = (friction && row.has_friction ? &delassus.sliding(c) : nullptr);
+      const Lanes<dim>  u      = delassus.relative_velocity(row, v);
+      const Lanes<dim>  next   = next_impulse<dim>(row, slide, impulses[c], u, target[c]);
+      const Lanes<dim>  step   = next - impulses[c];
+      const double      square = dot<dim>(step, step);
       if (square == 0)
         continue;
       impulses[c] = next;
@@ -54,9 +55,11 @@ GaussSeidel<dim>::residual(const Delassus<dim>       &delassus,
   for (std::size_t c = 0; c < rows.size(); ++c)
     if (!rows[c].fixed)
       {
+        const auto *const slide =
+          (friction && rows[c].has_friction ? &delassus.sliding(c) : nullptr);
         const Lanes<dim> u = delassus.relative_velocity(rows[c], v);
         const Lanes<dim> step =
-          next_impulse<dim>(rows[c], impulses[c], u, target[c], friction) - impulses[c];
+          next_impulse<dim>(rows[c], slide, impulses[c], u, target[c]) - impulses[c];
         const double size = rows[c].normal_inverse_mass;
         result            = std::max(result, dot<dim>(step, step) * size * size);
       }

@@ -28,10 +28,10 @@ solve_stick_slip(Delassus<dim>                       &delassus,
         continue;
       const double normal = approach / delassus.true_inverse_masses()[c].normal;
       impulses[c]         = normal * n;
-      if (row.friction > 0)
+      if (row.has_friction)
         {
           auto tangential   = -(u + approach * n) / delassus.true_inverse_masses()[c].tangential;
-          const double size = tangential.norm(), limit = row.friction * normal;
+          const double size = tangential.norm(), limit = delassus.sliding(c).friction * normal;
           if (size > limit)
             tangential *= limit / size;
           impulses[c] += tangential;

@@ -56,8 +56,8 @@ public:
   const Impulses<dim> &impulses() const { return result; }
   const SolverReport  &report() const { return statistics; }
 
-  /// Velocities of the unknowns and rigid bodies with contact, in the order they were given.
-  const Velocities<dim> &velocities() const { return velocity; }
+  /// What the impulses make of the predicted velocities.
+  Velocities<dim> velocities() const;
 
 private:
   void solve_split(const std::vector<Contact<dim>> &contacts, const double dt);
@@ -73,7 +73,7 @@ private:
   Delassus<dim>       delassus;
   GaussSeidel<dim>    gauss_seidel;
   WarmStart<dim>      warm_start;
-  Velocities<dim>     velocity, displacement_rate;
+  LaneVelocities<dim> velocity, displacement_rate;
   std::vector<double> target;
   std::vector<bool>   active;
   Impulses<dim>       result;

@@ -77,15 +77,34 @@ Coupling<dim>::declare(Declaration &root)
 }
 
 template <int dim>
-Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
+Coupling<dim>::Coupling(const Parameters  &root,
+                        MPI_Comm           comm,
+                        const std::string &saved_octree)
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
   , structure(root, materials, options.gravity, comm)
-  , points(root, materials, options.gravity, structure.n_sheets(), comm)
+  , points(root, materials, options.gravity, structure.n_sheets(), comm, saved_octree)
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
   , comm(comm)
 {
-  projected = contacts.resolve_initial_overlaps(root, points, structure);
+  if (saved_octree.empty())
+    projected = contacts.resolve_initial_overlaps(root, points, structure);
+}
+
+template <int dim>
+void
+Coupling<dim>::serialize(Archive &archive)
+{
+  archive.same("time", current_time);
+  archive.same("dt", current_dt);
+  archive.same("step", n_steps);
+  structure.serialize(archive);
+  points.serialize(archive);
+  contacts.serialize(archive, points);
+  archive.share("particle_steps", particle_steps);
+  archive.same("contact_steps", contact_steps);
+  archive.same("unconverged_contact_steps", unconverged_contact_steps);
+  archive.same("worst_gap", worst_gap);
 }
 
 template <int dim>

@@ -39,10 +39,12 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
                                               const MaterialLibrary        &materials,
                                               const dealii::Tensor<1, dim> &gravity,
                                               const int                     n_sheets,
-                                              MPI_Comm                      comm)
+                                              MPI_Comm                      comm,
+                                              const std::string            &saved_octree)
   : octree(OctreeDescription<dim>::read(root.section("Grid")),
            particle_weight<dim>(root.section("Bodies")),
-           comm)
+           comm,
+           saved_octree)
   , boundary(BoxBoundary<dim>::read(root.section("Grid")), octree)
   , split(octree)
   , gravity(gravity)
@@ -51,10 +53,32 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
     if (section.section(name).choice("Kind") == "material points")
-      bodies.emplace_back(section.section(name), materials, octree, n_sheets);
+      bodies.emplace_back(
+        section.section(name), materials, octree, n_sheets, saved_octree.empty());
   make_fields();
   for (auto &body : bodies)
     energy.kinetic += body.points.kinetic_energy();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::serialize(Archive &archive)
+{
+  for (auto &body : bodies)
+    {
+      body.serialize(archive);
+      if (!archive.is_exact())
+        distribute(octree, body.margin_of_shape(), body.points);
+    }
+  archive.share("energy.kinetic", energy.kinetic);
+  archive.share("energy.internal", energy.internal);
+  archive.share("energy.damping", energy.damping);
+  archive.share("energy.transfer", energy.transfer);
+  archive.share("energy.boundary", energy.boundary);
+  archive.share("energy.contact", energy.contact);
+  archive.share("energy.external_work", energy.external_work);
+  archive.same("steps_since_sort", steps_since_sort);
+  archive.own("renumbered", renumbered);
 }
 
 template <int dim>

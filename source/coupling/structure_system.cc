@@ -241,6 +241,14 @@ StructureSystem<dim>::apply_node_impulses(
   });
 }
 
+template <int dim>
+void
+StructureSystem<dim>::serialize(Archive &archive)
+{
+  for_each_surface([&](auto &body, const unsigned int) { body.serialize(archive); });
+  archive.share("contact_momentum_of_structures", received);
+}
+
 template class StructureSystem<2>;
 template class StructureSystem<3>;
 } // namespace coracle

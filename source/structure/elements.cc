@@ -225,6 +225,20 @@ Elements<dim>::hourglass_energy() const
   return std::accumulate(data.columns[Data::energy], data.columns[Data::energy] + n_elements, 0.);
 }
 
+template <int dim>
+void
+Elements<dim>::serialize(Archive &archive, const std::vector<std::uint64_t> &keys)
+{
+  archive.keyed("elements", keys, n_elements, data.columns, {});
+  archive.smallest("stable_step", stable_step);
+  std::vector<double> last(data.columns.n_columns());
+  for (unsigned int i = n_elements; i < data.columns.size(); ++i)
+    {
+      data.columns.get_row(n_elements - 1, last.data());
+      data.columns.set_row(i, last.data());
+    }
+}
+
 template class Elements<2>;
 template class Elements<3>;
 } // namespace coracle

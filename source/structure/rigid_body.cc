@@ -270,6 +270,23 @@ RigidBody<dim>::summary() const
   return {body_mass, body_centre, body_velocity, last_force, last_moment, spin()};
 }
 
+template <int dim>
+void
+RigidBody<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "body " + this->name());
+  this->serialize_nodes(archive, {});
+  archive.same("centre", body_centre);
+  archive.same("velocity", body_velocity);
+  rotation.serialize(archive);
+  archive.same("last_force", last_force);
+  archive.same("last_moment", last_moment);
+  archive.same("time", time);
+  archive.same("last_dt", last_dt);
+  archive.same("external_work", external_work);
+  archive.same("contact_work", contact_work);
+}
+
 template class RigidBody<2>;
 template class RigidBody<3>;
 } // namespace coracle

@@ -28,7 +28,11 @@ class Coupling
 public:
   /// All sections that every case has. Collective; throws UserError.
   static void declare(Declaration &root);
-  Coupling(const Parameters &root, MPI_Comm comm);
+  /// @param saved_octree of a state that is loaded next (see Octree); empty: the start of the case
+  Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree = "");
+
+  /// The whole state between steps but for the octree's leaves. Collective.
+  void serialize(Archive &archive);
 
   /// One step; no longer than up to `end_time`. Collective; throws RunFailure.
   void advance(const double end_time);

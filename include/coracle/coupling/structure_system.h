@@ -59,6 +59,9 @@ public:
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
+  /// Between steps.
+  void serialize(Archive &archive);
+
   /// Elements of deformable bodies on this rank.
   unsigned int n_elements() const
   {

@@ -62,6 +62,8 @@ public:
   Energies         energies() const;
   BodySummary<dim> summary() const;
 
+  void serialize(Archive &archive);
+
   // What contact solves for (RigidUnknown of contact/contact.h).
   const dealii::Point<dim> &centre() const { return body_centre; }
   const Vector             &centre_velocity() const { return body_velocity; }

@@ -54,7 +54,7 @@ public:
   {
     const Parameters         output_section = root.section("Output");
     const OutputSettings     settings       = OutputSettings::read(output_section, end_time);
-    const CheckpointSettings saving = CheckpointSettings::read(root.section("Checkpoint"));
+    const CheckpointSettings saving         = CheckpointSettings::read(root.section("Checkpoint"));
     OutputDirectory          directory(output_section, options.file, comm, bool(from));
     mpi::agree(
       [&] {
@@ -70,9 +70,9 @@ public:
       load_checkpoint(*from, coupling, &output);
     Progress progress(log.out(), end_time);
     progress.header(options.file, facts());
-    RunControl  control(saving, directory.path(), comm);
-    Loop        loop{settings, saving, output, progress, control};
-    Verdict     verdict;
+    RunControl control(saving, directory.path(), comm);
+    Loop       loop{settings, saving, output, progress, control};
+    Verdict    verdict;
     try
       {
         run_loop(loop);
@@ -121,12 +121,13 @@ private:
     for (const std::string &complaint : complaints)
       all += complaint + "\n            ";
     if (!found)
-      throw UserError("there is no checkpoint to go on from",
-                      "command line, --restart",
-                      complaints.empty() ? "no checkpoint in " + checkpoints.path() :
-                                           all.substr(0, all.find_last_not_of("\n ") + 1),
-                      "see that Output/Directory is that of the run to be continued, or run the case "
-                      "from its start, without --restart");
+      throw UserError(
+        "there is no checkpoint to go on from",
+        "command line, --restart",
+        complaints.empty() ? "no checkpoint in " + checkpoints.path()
+                           : all.substr(0, all.find_last_not_of("\n ") + 1),
+        "see that Output/Directory is that of the run to be continued, or run the case "
+        "from its start, without --restart");
     if (found->facts.dimension != dim)
       throw root.error("Dimension",
                        "this is not the case that is to be continued",
@@ -186,7 +187,10 @@ private:
       coupling.timed("report", [&] {
         // A report ends the time over which forces are means: one for a moment.
         if (!told.row && !told.line)
-          loop.report = loop.output.make_report(coupling);
+          {
+            loop.report = loop.output.make_report(coupling);
+            check_while_running(loop.report, loop.settings.limits);
+          }
         if (row)
           loop.output.write_statistics(loop.report, coupling);
         if (line)
@@ -306,11 +310,11 @@ declare_parameters(Declaration &root)
   Declaration &output = root.section("Output", "What is written, when and where.");
   OutputSettings::declare(output);
   ProbeDescription<3>::declare(root);
-  CheckpointSettings::declare(
-    root.section("Checkpoint",
-                 "When the whole state is saved, so that --restart goes on from there. Besides, "
-                 "SIGTERM, SIGINT (Ctrl-C) and the stop file save it and stop the run, SIGUSR1 saves "
-                 "it and lets the run go on."));
+  CheckpointSettings::declare(root.section(
+    "Checkpoint",
+    "When the whole state is saved, so that --restart goes on from there. Besides, "
+    "SIGTERM, SIGINT (Ctrl-C) and the stop file save it and stop the run, SIGUSR1 saves "
+    "it and lets the run go on."));
 }
 
 int

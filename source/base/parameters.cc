@@ -204,8 +204,7 @@ Parameters::entries() const
           if (location.file.empty() && !value.given)
             location.file = data->file_name;
           const std::string entry = internal::join_path(path, name);
-          result.push_back(
-            {entry, value.text, value.numbers, internal::describe(location, entry)});
+          result.push_back({entry, value.text, value.numbers, internal::describe(location, entry)});
         }
     }
   return result;

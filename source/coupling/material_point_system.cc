@@ -53,8 +53,7 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
     if (section.section(name).choice("Kind") == "material points")
-      bodies.emplace_back(
-        section.section(name), materials, octree, n_sheets, saved_octree.empty());
+      bodies.emplace_back(section.section(name), materials, octree, n_sheets, saved_octree.empty());
   make_fields();
   for (auto &body : bodies)
     energy.kinetic += body.points.kinetic_energy();
@@ -128,6 +127,46 @@ MaterialPointSystem<dim>::stable_time_step() const
     }
   rate = mpi::max(rate, octree.triangulation.get_communicator());
   return rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity();
+}
+
+template <int dim>
+std::string
+MaterialPointSystem<dim>::describe_limit() const
+{
+  using Layout        = ParticleLayout<dim>;
+  const MPI_Comm comm = octree.triangulation.get_communicator();
+  const auto     rate = [comm](const auto &body) {
+    return mpi::max(body.sweep.rate + 2 * dim * body.sweep.diffusion_rate, comm);
+  };
+  const auto body =
+    std::max_element(bodies.begin(), bodies.end(), [&](const auto &a, const auto &b) {
+      return rate(a) < rate(b);
+    });
+  if (body == bodies.end())
+    return "";
+  // Speed, id, place.
+  std::array<double, 2 + dim> fastest{};
+  for (std::size_t row = 0; row < body->points.n_rows(); ++row)
+    {
+      double square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += std::pow(body->points.column(Layout::velocity + d)[row], 2);
+      if (square > fastest[0])
+        {
+          fastest = {square, static_cast<double>(body->points.id(row))};
+          for (int d = 0; d < dim; ++d)
+            fastest[2 + d] = body->points.position(row)[d];
+        }
+    }
+  for (const auto &other : dealii::Utilities::MPI::all_gather(comm, fastest))
+    fastest = std::max(fastest, other);
+  std::ostringstream text;
+  text << "'" << body->name() << "' asks for it, whose fastest particle is number " << fastest[1]
+       << " at (";
+  for (int d = 0; d < dim; ++d)
+    text << (d > 0 ? ", " : "") << fastest[2 + d];
+  text << ") m with " << std::sqrt(fastest[0]) << " m/s";
+  return text.str();
 }
 
 template <int dim>

@@ -218,9 +218,9 @@ distribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoin
 {
   // Who owns a far leaf is not known here, but the boxes around what ranks own are: all who may own
   // it get the particle, and the one that does keeps it.
-  const MPI_Comm     comm  = octree.triangulation.get_communicator();
-  const auto         boxes = dealii::Utilities::MPI::all_gather(comm, octree.owned_region());
-  const unsigned int width = points.columns.n_columns();
+  const MPI_Comm      comm     = octree.triangulation.get_communicator();
+  const auto          boxes    = dealii::Utilities::MPI::all_gather(comm, octree.owned_region());
+  const unsigned int  width    = points.columns.n_columns();
   const std::uint64_t n_before = mpi::sum<std::uint64_t>(points.n_particles(), comm);
   std::map<unsigned int, std::vector<double>> to_send;
   for (std::size_t row = 0; row < points.n_rows(); ++row)
@@ -251,13 +251,13 @@ distribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoin
   sort_by_leaf(octree, margin_of_shape, points);
 }
 
-#define INSTANTIATE(dim)                                          \
-  template unsigned int move_and_locate(const Octree<dim> &,      \
-                                        const BoxBoundary<dim> &, \
-                                        const double,             \
-                                        const double,             \
-                                        MaterialPoints<dim> &);   \
-  template void distribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
+#define INSTANTIATE(dim)                                                                      \
+  template unsigned int move_and_locate(const Octree<dim> &,                                  \
+                                        const BoxBoundary<dim> &,                             \
+                                        const double,                                         \
+                                        const double,                                         \
+                                        MaterialPoints<dim> &);                               \
+  template void         distribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
   template void         sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
 
 INSTANTIATE(2)

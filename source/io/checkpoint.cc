@@ -104,13 +104,15 @@ load_checkpoint(const CheckpointFolder::Saved &saved,
     output->serialize(archive);
 }
 
-#define INSTANTIATE(dim)                                                                        \
-  template void write_checkpoint(CheckpointFolder &,                                            \
-                                 const std::string &,                                           \
-                                 Coupling<dim> &,                                               \
-                                 CouplingOutput<dim> &,                                         \
-                                 const unsigned int);                                           \
-  template void load_checkpoint(const CheckpointFolder::Saved &, Coupling<dim> &, CouplingOutput<dim> *);
+#define INSTANTIATE(dim)                                         \
+  template void write_checkpoint(CheckpointFolder &,             \
+                                 const std::string &,            \
+                                 Coupling<dim> &,                \
+                                 CouplingOutput<dim> &,          \
+                                 const unsigned int);            \
+  template void load_checkpoint(const CheckpointFolder::Saved &, \
+                                Coupling<dim> &,                 \
+                                CouplingOutput<dim> *);
 
 INSTANTIATE(2)
 INSTANTIATE(3)

@@ -24,7 +24,8 @@ std::string
 folder_name(const std::uint64_t step)
 {
   char text[32];
-  std::snprintf(text, sizeof(text), "%s%010llu", prefix.c_str(), static_cast<unsigned long long>(step));
+  std::snprintf(
+    text, sizeof(text), "%s%010llu", prefix.c_str(), static_cast<unsigned long long>(step));
   return text;
 }
 
@@ -115,7 +116,7 @@ CheckpointFolder::commit(const Facts                    &facts,
                          const std::vector<std::string> &files,
                          const unsigned int              n_kept)
 {
-  using Measured = std::pair<std::string, std::pair<std::uint64_t, std::uint64_t>>;
+  using Measured               = std::pair<std::string, std::pair<std::uint64_t, std::uint64_t>>;
   const std::string     beside = current + unfinished;
   std::vector<Measured> mine;
   mpi::agree(
@@ -123,7 +124,9 @@ CheckpointFolder::commit(const Facts                    &facts,
       for (const std::string &name : files)
         {
           mine.push_back({name, {0, 0}});
-          if (!measure_file(beside + "/" + name, mine.back().second.first, mine.back().second.second))
+          if (!measure_file(beside + "/" + name,
+                            mine.back().second.first,
+                            mine.back().second.second))
             throw_not_written(beside + "/" + name + ": it cannot be read back");
         }
     },
@@ -204,10 +207,7 @@ CheckpointFolder::check(const std::string &name, Facts &facts) const
   std::string       problem = read_manifest(path + "/manifest.json", contents);
   if (problem.empty())
     {
-      facts = {contents["dimension"],
-               contents["ranks"],
-               contents["step"],
-               contents["time"]};
+      facts = {contents["dimension"], contents["ranks"], contents["step"], contents["time"]};
       // Shared out, because checksums take as long as reading.
       unsigned int i = 0;
       for (const auto &[file, expected] : contents["files"].items())
@@ -223,8 +223,7 @@ CheckpointFolder::check(const std::string &name, Facts &facts) const
 std::optional<CheckpointFolder::Saved>
 CheckpointFolder::newest_good(std::vector<std::string> &complaints) const
 {
-  const auto names =
-    mpi::on_root<std::vector<std::string>>([&] { return list(); }, comm);
+  const auto names = mpi::on_root<std::vector<std::string>>([&] { return list(); }, comm);
   for (const std::string &name : names)
     {
       Saved             saved{folder + "/" + name, {}};

@@ -15,13 +15,14 @@ CheckpointSettings::declare(Declaration &section)
                    "",
                    "Time on the clock between two checkpoints; 0: not by the clock",
                    0);
-  section.quantity("Wall time limit",
-                   "0 s",
-                   "s",
-                   "",
-                   "The run writes a checkpoint and stops before it has taken so long on the clock, "
-                   "with time left for the writing; 0: no limit",
-                   0);
+  section.quantity(
+    "Wall time limit",
+    "0 s",
+    "s",
+    "",
+    "The run writes a checkpoint and stops before it has taken so long on the clock, "
+    "with time left for the writing; 0: no limit",
+    0);
   section.integer("Number kept", 2, "Checkpoints that are kept, the newest", 1);
   section.text("Stop file",
                "stop",
@@ -32,8 +33,9 @@ CheckpointSettings::declare(Declaration &section)
 CheckpointSettings
 CheckpointSettings::read(const Parameters &section)
 {
-  const double time = section.quantity("Interval"), wall = section.quantity("Interval in wall time");
-  const int    steps = section.integer("Interval in steps");
+  const double time = section.quantity("Interval"),
+               wall = section.quantity("Interval in wall time");
+  const int steps   = section.integer("Interval in steps");
   return {Interval(time, steps),
           wall,
           section.quantity("Wall time limit"),

@@ -98,13 +98,9 @@ Hdf5Archive::put(const std::string &name, const Block &block, const void *const 
   H5Pset_obj_track_times(creation, false);
   const hid_t set =
     H5Dcreate2(files[0], name.c_str(), type_of(block.type), space, links, creation, H5P_DEFAULT);
-  const bool good = set >= 0 && (block.n_rows * block.n_columns == 0 ||
-                                 H5Dwrite(set,
-                                          type_of(block.type),
-                                          H5S_ALL,
-                                          H5S_ALL,
-                                          H5P_DEFAULT,
-                                          values) >= 0);
+  const bool good =
+    set >= 0 && (block.n_rows * block.n_columns == 0 ||
+                 H5Dwrite(set, type_of(block.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
   H5Dclose(set);
   H5Pclose(creation);
   H5Pclose(links);
@@ -139,8 +135,8 @@ Hdf5Archive::get(const unsigned int part, const std::string &name, Block &block)
   block.n_rows    = extent[0];
   block.n_columns = extent[1];
   std::vector<char> bytes(extent[0] * extent[1] * H5Tget_size(type));
-  good = good && (bytes.empty() ||
-                  H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0);
+  good =
+    good && (bytes.empty() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0);
   H5Tclose(type);
   H5Sclose(space);
   H5Dclose(set);

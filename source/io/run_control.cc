@@ -12,8 +12,8 @@ namespace
 /// Reasons as bits, so that those of all ranks go into one reduction.
 enum Reason : int
 {
-  interrupted = 1,
-  terminated  = 2,
+  interrupted          = 1,
+  terminated           = 2,
   asked_for_checkpoint = 4,
   found_stop_file      = 8,
   out_of_time          = 16,

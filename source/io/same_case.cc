@@ -51,11 +51,12 @@ check_same_case(const Parameters &now, const Parameters &then)
 
   std::vector<std::string> changed, forbidden;
   std::string              where;
-  const auto note = [&](const std::string &path, const std::string &what, const std::string &place) {
-    (may_change(path) ? changed : forbidden).push_back(path + ": " + what);
-    if (!may_change(path) && where.empty())
-      where = place;
-  };
+  const auto               note =
+    [&](const std::string &path, const std::string &what, const std::string &place) {
+      (may_change(path) ? changed : forbidden).push_back(path + ": " + what);
+      if (!may_change(path) && where.empty())
+        where = place;
+    };
   for (const auto &entry : now.entries())
     {
       const auto found = before.find(entry.path);

@@ -109,16 +109,16 @@ Statistics::go_on()
 {
   std::ifstream  old(file_name);
   std::string    line;
-  std::uint64_t  n = 0;
-  std::streamoff end = 0;
+  std::uint64_t  n            = 0;
+  std::streamoff end          = 0;
   const bool     same_columns = std::getline(old, line) && line == header();
   for (; same_columns && n < n_rows && std::getline(old, line) && !old.eof(); ++n)
     end = old.tellg();
   if (n < n_rows)
     throw RunFailure("results of the run that is to be continued are missing",
                      file_name + (same_columns ? ": " + std::to_string(n) + " rows instead of " +
-                                                   std::to_string(n_rows) :
-                                                 ": it does not exist, or has other columns"),
+                                                   std::to_string(n_rows)
+                                               : ": it does not exist, or has other columns"),
                      "put the file back, or run the case from its start, without --restart");
   old.close();
   std::error_code error;

@@ -35,8 +35,8 @@ std::uint64_t
 element_key(const Cell &cell)
 {
   constexpr unsigned int path_bits = 3 * 11 + 1;
-  const dealii::CellId   id   = cell->id();
-  std::uint64_t          path = 1;
+  const dealii::CellId   id        = cell->id();
+  std::uint64_t          path      = 1;
   for (const auto child : id.get_child_indices())
     path = 8 * path + static_cast<unsigned int>(child);
   const std::uint64_t coarse = id.get_coarse_cell_id();

@@ -5,6 +5,8 @@
 #include <coracle/structure/rigid_body.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <vector>
 
 namespace coracle
@@ -217,6 +219,20 @@ RigidBody<dim>::move(const double dt)
   body_centre += dt * body_velocity;
   rotation.advance(dt);
   set_node_positions();
+}
+
+template <int dim>
+void
+RigidBody<dim>::update_stress(const double)
+{
+  if (std::isfinite(body_centre.norm_square() + body_velocity.norm_square() + spin().norm_square()))
+    return;
+  std::ostringstream details;
+  details << "t = " << time + last_dt << " s, centre at (" << body_centre << ") m, velocity ("
+          << body_velocity << ") m/s, spin (" << spin() << ") rad/s";
+  throw RunFailure("the motion of a rigid body is not a number",
+                   details.str(),
+                   "look at functions that move it, and at what it meets");
 }
 
 template <int dim>

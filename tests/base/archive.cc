@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State that three ranks have saved comes back to three bit by bit, and to two as the same common values,
-// sums, extremes, rows and keyed rows.
+// State that three ranks have saved comes back to three bit by bit, and to two as the same common
+// values, sums, extremes, rows and keyed rows.
 #include <coracle/base/archive.h>
 #include <coracle/base/exceptions.h>
 
@@ -20,9 +20,10 @@ public:
 
   void put(const std::string &name, const Block &block, const void *values) override
   {
-    const std::size_t size = block.type == Block::Type::real || block.type == Block::Type::natural ? 8 :
-                             block.type == Block::Type::byte                                      ? 1 :
-                                                                                                    4;
+    const std::size_t size  = block.type == Block::Type::real || block.type == Block::Type::natural
+                                ? 8
+                              : block.type == Block::Type::byte ? 1
+                                                                : 4;
     const char *const begin = static_cast<const char *>(values);
     parts[writer][name]     = {block,
                                std::vector<char>(begin, begin + size * block.n_rows * block.n_columns)};
@@ -48,15 +49,15 @@ private:
 /// What one rank has: nodes in a row, two of which it shares with its neighbours.
 struct State
 {
-  double                                time = 0, energy = 0, rate = 0, step = 0;
-  bool                                  flag = false;
-  std::vector<std::string>              names;
+  double                                 time = 0, energy = 0, rate = 0, step = 0;
+  bool                                   flag = false;
+  std::vector<std::string>               names;
   std::vector<std::vector<unsigned int>> lists;
-  std::vector<dealii::Tensor<1, 2>>     momenta;
-  std::vector<int>                      cells;
-  Columns                               particles = Columns(2), nodes = Columns(2);
-  std::vector<std::uint64_t>            keys;
-  unsigned int                          n_owned = 0;
+  std::vector<dealii::Tensor<1, 2>>      momenta;
+  std::vector<int>                       cells;
+  Columns                                particles = Columns(2), nodes = Columns(2);
+  std::vector<std::uint64_t>             keys;
+  unsigned int                           n_owned = 0;
 
   void serialize(Archive &archive)
   {
@@ -148,7 +149,7 @@ main()
       loaded.nodes.resize(loaded.keys.size());
       loaded.serialize(archive);
       const State &s = saved[rank];
-      exact = exact && loaded.time == s.time && loaded.flag && loaded.energy == s.energy &&
+      exact          = exact && loaded.time == s.time && loaded.flag && loaded.energy == s.energy &&
               loaded.rate == s.rate && loaded.step == s.step && loaded.names == s.names &&
               loaded.lists == s.lists && loaded.momenta == s.momenta && loaded.cells == s.cells &&
               equal(loaded.particles, s.particles) && equal(loaded.nodes, s.nodes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Particles that wander at random stay whole, are on the rank that owns their leaf, and are all
-// accounted for; those that leave are counted at an open face and named at a closed one. Rows handed to
-// the wrong ranks find back.
+// accounted for; those that leave are counted at an open face and named at a closed one. Rows
+// handed to the wrong ranks find back.
 #include <coracle/base/exceptions.h>
 
 #include "grid/scene.h"

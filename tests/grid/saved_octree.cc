@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An octree that was saved and loaded has the same leaves, owners and node numbers, bit by bit, though it is
-// not the one that the description makes; other ranks get the same leaves.
+// An octree that was saved and loaded has the same leaves, owners and node numbers, bit by bit,
+// though it is not the one that the description makes; other ranks get the same leaves.
 #include "grid/scene.h"
 
 using namespace coracle;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of checkpoints the newest kept are found; one with a file that is shorter, longer, changed, missing, or
-// of another version is passed over and named; what was not finished is never seen.
+// Of checkpoints the newest kept are found; one with a file that is shorter, longer, changed,
+// missing, or of another version is passed over and named; what was not finished is never seen.
 #include <coracle/base/exceptions.h>
 #include <coracle/base/mpi.h>
 #include <coracle/io/checkpoint_folder.h>
@@ -38,8 +38,8 @@ report(const CheckpointFolder &folder, const std::string &what)
   const auto               found = folder.newest_good(complaints);
   deallog << what << ": ";
   if (found)
-    deallog << "step " << found->facts.step << " of dimension " << found->facts.dimension << " at t = "
-            << found->facts.time;
+    deallog << "step " << found->facts.step << " of dimension " << found->facts.dimension
+            << " at t = " << found->facts.time;
   else
     deallog << "none";
   deallog << std::endl;
@@ -84,9 +84,7 @@ main(int argc, char **argv)
 
   damage([&] { fs::resize_file(last, 50); });
   report(folder, "a file is shorter");
-  damage([&] {
-    std::ofstream(last, std::ios::trunc) << std::string(200, 'x');
-  });
+  damage([&] { std::ofstream(last, std::ios::trunc) << std::string(200, 'x'); });
   report(folder, "a file is longer");
   damage([&] { fs::remove(last); });
   report(folder, "a file is gone");

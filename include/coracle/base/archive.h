@@ -237,7 +237,7 @@ private:
         using Entry = typename T::value_type;
         if constexpr (IsVector<Entry>::value || std::is_same_v<Entry, std::string>)
           {
-            std::vector<std::uint64_t> sizes;
+            std::vector<std::uint64_t>                                          sizes;
             std::vector<std::decay_t<decltype(*std::declval<Entry>().begin())>> entries;
             for (const Entry &entry : value)
               {
@@ -262,7 +262,7 @@ private:
         using Entry = typename T::value_type;
         if constexpr (IsVector<Entry>::value || std::is_same_v<Entry, std::string>)
           {
-            std::vector<std::uint64_t> sizes;
+            std::vector<std::uint64_t>                                          sizes;
             std::vector<std::decay_t<decltype(*std::declval<Entry>().begin())>> entries;
             load(part, name + ".sizes", sizes);
             load(part, name, entries);
@@ -307,7 +307,7 @@ private:
       value = T();
   }
 
-  void              put(const std::string &name, const Block &block, const void *values);
+  void put(const std::string &name, const Block &block, const void *values);
   /// Checks that the block is of the type and width, and has as many rows if that is not 0.
   std::vector<char> get(const unsigned int part, const std::string &name, const Block &block) const;
 

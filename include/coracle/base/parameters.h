@@ -126,12 +126,12 @@ public:
   {
     /// "Bodies/water/Particle spacing"; for sections with names of the user's the path of their
     /// parent, with their names as the text.
-    std::string         path;
-    std::string         text;
+    std::string path;
+    std::string text;
     /// In SI; none for texts and functions.
     std::vector<double> numbers;
     /// "case.prm, line 5, Bodies/water/Particle spacing"
-    std::string         where;
+    std::string where;
   };
   /// All of them, by path.
   std::vector<Entry> entries() const;

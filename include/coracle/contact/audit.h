@@ -63,10 +63,7 @@ public:
   const std::vector<Crossing<dim>> &crossings() const { return last; }
 
   /// How many there were; the first ones are forgotten.
-  void serialize(Archive &archive)
-  {
-    archive.share("n_crossings", total);
-  }
+  void serialize(Archive &archive) { archive.share("n_crossings", total); }
 
   static constexpr unsigned int n_kept = 5;
 

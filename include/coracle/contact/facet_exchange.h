@@ -70,10 +70,10 @@ private:
     std::uint64_t                                     key;
   };
 
-  void merge(const std::vector<std::vector<SurfaceNode<dim>>> &nodes,
-             const std::vector<std::vector<FacetMessage>>     &facets);
+  void        merge(const std::vector<std::vector<SurfaceNode<dim>>> &nodes,
+                    const std::vector<std::vector<FacetMessage>>     &facets);
   static void serialize(Archive &archive, std::vector<Partner> &partners);
-  void exchange(std::vector<Partner> &from, std::vector<Partner> &to, const int tag) const;
+  void        exchange(std::vector<Partner> &from, std::vector<Partner> &to, const int tag) const;
 
   MPI_Comm                     communicator;
   Surface<dim>                 local;

@@ -27,6 +27,8 @@ public:
 
   /// Over all ranks [s].
   double stable_time_step() const;
+  /// Whose step that is, for messages. Collective.
+  std::string describe_limit() const;
 
   void assemble_forces(const double time);
   void predict_velocities(const double dt);

@@ -26,8 +26,8 @@ unsigned int move_and_locate(const Octree<dim>      &octree,
                              MaterialPoints<dim>    &points);
 
 /**
- * Particles that are on any rank, in no order, go to the rank of their leaf and are sorted there; holes
- * are dropped. Collective; throws RunFailure on all ranks if one of them belongs nowhere.
+ * Particles that are on any rank, in no order, go to the rank of their leaf and are sorted there;
+ * holes are dropped. Collective; throws RunFailure on all ranks if one of them belongs nowhere.
  */
 template <int dim>
 void

@@ -36,9 +36,9 @@ public:
   };
 
   /**
-   * Collective. An empty folder to write files to; then commit() makes it a checkpoint, in the place
-   * of one of the same step, and removes all but the newest n_kept; or abandon() removes it. Both
-   * throw RunFailure on all ranks.
+   * Collective. An empty folder to write files to; then commit() makes it a checkpoint, in the
+   * place of one of the same step, and removes all but the newest n_kept; or abandon() removes it.
+   * Both throw RunFailure on all ranks.
    */
   std::string begin(const std::uint64_t step);
   /// @param files that this rank wrote, names inside the folder

@@ -23,6 +23,5 @@ void make_durable(const std::string &name);
 void write_durable(const std::string &file_name, const std::vector<char> &content);
 
 /// Size and CRC-32 of a file; false if it can't be read.
-bool
-measure_file(const std::string &file_name, std::uint64_t &size, std::uint64_t &checksum);
+bool measure_file(const std::string &file_name, std::uint64_t &size, std::uint64_t &checksum);
 } // namespace coracle

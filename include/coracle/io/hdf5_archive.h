@@ -24,8 +24,8 @@ public:
 
   void put(const std::string &name, const Block &block, const void *values) override;
   std::vector<char>
-       get(const unsigned int part, const std::string &name, Block &block) const override;
-  bool has(const unsigned int part, const std::string &name) const override;
+               get(const unsigned int part, const std::string &name, Block &block) const override;
+  bool         has(const unsigned int part, const std::string &name) const override;
   unsigned int n_parts() const override { return files.size(); }
 
   /// The file of what was put, after which nothing more can be.

@@ -33,7 +33,10 @@ public:
   Orders ask(const double time, const std::uint64_t step);
 
   /// Intervals count from here: the state that a run goes on from. Nothing is due.
-  void start_from(const double time, const std::uint64_t step) { settings.interval.due(time, step); }
+  void start_from(const double time, const std::uint64_t step)
+  {
+    settings.interval.due(time, step);
+  }
 
   /// A checkpoint is done.
   void checkpoint_written(const double seconds);

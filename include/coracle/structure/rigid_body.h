@@ -57,7 +57,8 @@ public:
   void apply_corrections();
 
   void move(const double dt);
-  void update_stress(const double) {}
+  /// Throws RunFailure, on all ranks, where the motion is not a number.
+  void update_stress(const double);
 
   Energies         energies() const;
   BodySummary<dim> summary() const;

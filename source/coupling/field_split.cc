@@ -131,10 +131,9 @@ FieldSplit<dim>::follow_sheets(const bool gimp)
   way = mpi::max(way, comm);
   if (way == 0 && !moved)
     return;
-  const double skin = skin_of_moving_sheets * smallest_cell;
-  if (way > skin)
+  if (way > searched_skin)
     // Sheets that have never moved may never do.
-    find_near_leaves(searched ? skin : on_surface * smallest_cell, gimp);
+    find_near_leaves((searched ? skin_of_moving_sheets : on_surface) * smallest_cell, gimp);
   else
     {
       moved = true;
@@ -196,8 +195,9 @@ template <int dim>
 void
 FieldSplit<dim>::find_near_leaves(const double skin, const bool gimp)
 {
-  searched = true;
-  moved    = false;
+  searched      = true;
+  moved         = false;
+  searched_skin = skin;
   searched_at.clear();
   for (const auto &node : sheets.nodes)
     searched_at.push_back(node.position);

@@ -66,6 +66,8 @@ private:
   std::vector<dealii::Point<dim>> searched_at;
   /// Has there been a search, and have sheets moved since the last?
   bool searched = false, moved = false;
+  /// How far sheets may have moved since then [m].
+  double searched_skin = 0;
 
   contact::FacetExchange<dim> exchange;
   Crossing                    crossing;

@@ -385,6 +385,35 @@ ContactSystem<dim>::audit(const Surface<dim> &owned, const std::vector<PointSet<
   return n;
 }
 
+template <int dim>
+void
+ContactSystem<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "contact");
+  {
+    const Archive::Section part(archive, "report");
+    statistics.serialize(archive);
+  }
+  archive.own("changed", changed);
+  archive.own("reach", reach);
+  archive.own("used", used);
+  archive.own("positions_at_search", positions_at_search);
+  {
+    const Archive::Section part(archive, "facets");
+    facets.serialize(archive);
+  }
+  {
+    const Archive::Section part(archive, "candidates");
+    search.serialize(archive);
+  }
+  solver.serialize(archive);
+  auditor.serialize(archive);
+  if (!archive.loads())
+    return;
+  local_search.reinit(facets.surface());
+  changed = changed || !archive.is_exact();
+}
+
 template class ContactSystem<2>;
 template class ContactSystem<3>;
 } // namespace coracle::contact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/contact/global_search.h>
 
 namespace coracle::contact
@@ -60,6 +61,9 @@ public:
 
   /// Of the last step, on this rank.
   const std::vector<Crossing<dim>> &crossings() const { return last; }
+
+  /// How many there were; the first ones are forgotten.
+  void serialize(Archive &archive) { archive.share("n_crossings", total); }
 
   static constexpr unsigned int n_kept = 5;
 

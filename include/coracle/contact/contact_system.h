@@ -31,6 +31,23 @@ struct ContactReport
   /// keeps.
   unsigned int  n_rebuilds   = 0;
   unsigned long n_candidates = 0;
+
+  void serialize(Archive &archive)
+  {
+    archive.same("n_contacts", n_contacts);
+    archive.same("worst_gap", worst_gap);
+    archive.same("work", work);
+    archive.same("energy_fed", energy_fed);
+    archive.same("n_penetrations", n_penetrations);
+    archive.same("n_resolved", n_resolved);
+    archive.same("n_failed", n_failed);
+    archive.share("n_held", n_held);
+    archive.same("largest_shift", largest_shift);
+    archive.same("n_rebuilds", n_rebuilds);
+    archive.share("n_candidates", n_candidates);
+    const Archive::Section section(archive, "solver");
+    solver.serialize(archive);
+  }
 };
 
 /**
@@ -147,6 +164,10 @@ public:
   const std::vector<Crossing<dim>> &first_crossings() const { return auditor.first_crossings(); }
 
   const ContactReport &report() const { return statistics; }
+
+  /// Between steps. Candidates go on as they are, because what is found depends on them in the last
+  /// digits; other ranks look for theirs at the next find().
+  void serialize(Archive &archive);
 
 private:
   /// Greatest speeds, radius and movement since the last search, over all ranks.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/contact/momentum.h>
 #include <coracle/contact/single_contact.h>
 
@@ -21,6 +22,13 @@ struct IterationReport
   /// Largest complementarity residual, as a velocity [m/s].
   double residual  = 0;
   bool   converged = true;
+
+  void serialize(Archive &archive)
+  {
+    archive.same("iterations", iterations);
+    archive.same("residual", residual);
+    archive.same("converged", converged);
+  }
 };
 
 /**

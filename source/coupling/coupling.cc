@@ -53,6 +53,7 @@ Coupling<dim>::declare(Declaration &root)
     root.section("Grid", "The background grid of material points: a box of square or cubic cells.");
   OctreeDescription<dim>::declare(grid);
   BoxBoundary<dim>::declare(grid);
+  Adaptivity<dim>::declare(grid);
   MaterialLibrary::declare(root);
   Declaration &body =
     root.named_sections("Bodies", "body", "Everything that moves, each with a name.");
@@ -83,9 +84,11 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
   , structure(root, materials, options.gravity, comm)
   , points(root, materials, options.gravity, structure.n_sheets(), comm)
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
+  , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
   , comm(comm)
 {
   projected = contacts.resolve_initial_overlaps(root, points, structure);
+  adaptivity.initialise(points, structure, contacts);
 }
 
 template <int dim>
@@ -144,6 +147,7 @@ Coupling<dim>::advance(const double end_time)
     points.locate(current_time);
     timed.count("particle", points.n_particles());
   });
+  timed("adapt", [&] { adaptivity.update(points, structure, contacts, current_time, dt); });
   timed("checks", [&] { check_state(); });
   count_work();
 }

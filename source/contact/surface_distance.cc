@@ -12,8 +12,9 @@ namespace
 double
 distance_square(const dealii::Point<2> &place, const Surface<2> &surface, const Facet<2> &facet)
 {
-  return nearest_point(
-           place, {surface.nodes[facet.nodes[0]].position, surface.nodes[facet.nodes[1]].position})
+  return nearest_point(place,
+                       {surface.nodes[facet.nodes[0]].position,
+                        surface.nodes[facet.nodes[1]].position})
     .distance_square;
 }
 

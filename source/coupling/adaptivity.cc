@@ -35,37 +35,34 @@ template <int dim>
 void
 Adaptivity<dim>::declare(Declaration &grid)
 {
-  Declaration &adaptivity =
-    grid.section("Adaptivity",
-                 "Cells that become finer and coarser while the run goes on, and particles that split "
-                 "and merge with them; it is on if there is any criterion. Regions of "
-                 "`Refinement` stay at least as fine as they say.");
+  Declaration &adaptivity = grid.section(
+    "Adaptivity",
+    "Cells that become finer and coarser while the run goes on, and particles that split "
+    "and merge with them; it is on if there is any criterion. Regions of "
+    "`Refinement` stay at least as fine as they say.");
   adaptivity.integer("Interval in steps", 50, "Steps between adaptations at most.", 1);
   adaptivity.quantity(
     "Interval in cells",
-    "0.5",
+    "1",
     "1",
     "",
-    "Adapted earlier when something may have moved by this share of the smallest cell; 0: not.",
+    "Adapted earlier when something may have moved by so many of the smallest cells; 0: not.",
     0.);
   ParticleRefinement<dim>::declare(adaptivity);
   RefinementCriteria<dim>::declare(adaptivity);
 
   Declaration &balance =
     grid.section("Load balance", "Sharing out of cells and their particles among the ranks.");
-  balance.quantity("Largest imbalance",
-                   "1.2",
-                   "1",
-                   "",
-                   "Work of the busiest rank over the mean, beyond which cells are shared out anew; 0: never.",
-                   0.);
+  balance.quantity(
+    "Largest imbalance",
+    "1.2",
+    "1",
+    "",
+    "Work of the busiest rank over the mean, beyond which cells are shared out anew; 0: never.",
+    0.);
   balance.integer("Interval in steps", 100, "Steps between looks at the balance.", 1);
-  balance.quantity("Work of a contact",
-                   "20",
-                   "1",
-                   "",
-                   "Of a contact over that of a particle, in a step.",
-                   0.);
+  balance.quantity(
+    "Work of a contact", "20", "1", "", "Of a contact over that of a particle, in a step.", 0.);
 }
 
 template <int dim>
@@ -208,8 +205,7 @@ Adaptivity<dim>::balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> 
 {
   state.steps_since_balance = 0;
   if (largest_imbalance == 0 || mpi::n_ranks(points.octree.triangulation.get_communicator()) == 1 ||
-      imbalance(points, contacts) <=
-        std::max(largest_imbalance, worse * state.reached_imbalance))
+      imbalance(points, contacts) <= std::max(largest_imbalance, worse * state.reached_imbalance))
     return;
   points.sort();
   points.octree.repartition(work(points, contacts));

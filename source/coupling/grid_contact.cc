@@ -21,9 +21,7 @@ GridContact<dim>::GridContact(const Options            &options,
                               MaterialPointSystem<dim> &points,
                               StructureSystem<dim>     &structure,
                               MPI_Comm                  comm)
-  : octree(points.octree)
-  , comm(comm)
-  , momenta(points.bodies.size())
+  : octree(points.octree), comm(comm), momenta(points.bodies.size())
 {
   const unsigned int n_fields = points.fields.size();
   if (options.between_fields)

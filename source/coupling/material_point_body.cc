@@ -140,13 +140,14 @@ MaterialPointBody<dim>::declare_method(Declaration &body)
                 "Radius of a particle for contact, over its size.",
                 0.,
                 2.);
-  body.quantity("Particles across a cell",
-                "0",
-                "1",
-                "",
-                "With adaptivity: particles along an edge of a cell, which splitting and merging keep up in "
-                "finer and coarser cells; 0: the largest number that the body starts with.",
-                0.);
+  body.quantity(
+    "Particles across a cell",
+    "0",
+    "1",
+    "",
+    "With adaptivity: particles along an edge of a cell, which splitting and merging keep up in "
+    "finer and coarser cells; 0: the largest number that the body starts with.",
+    0.);
   body.quantity(
     "Damping", "0", "1/s", "c", "Mass-proportional damping: velocities decay as exp(-c t).", 0.);
   body.quantity("Damping until", "1e300", "s", "", "Time at which damping ends.");
@@ -252,7 +253,7 @@ template <int dim>
 void
 MaterialPointBody<dim>::find_rates(const Octree<dim> &octree)
 {
-  using Layout        = ParticleLayout<dim>;
+  using Layout         = ParticleLayout<dim>;
   double largest_rate  = 0;
   sweep.diffusion_rate = 0;
   for (std::size_t row = 0; row < points.n_rows(); ++row)

@@ -22,28 +22,27 @@ template <int dim>
 void
 ParticleRefinement<dim>::declare(Declaration &adaptivity)
 {
-  adaptivity.quantity(
-    "Split below",
-    "0.7",
-    "1",
-    "",
-    "Particles split where a cell has fewer of their size across it than this share of what the body has "
-    "(its `Particles across a cell`); 0: never.",
-    0.,
-    0.99);
-  adaptivity.quantity(
-    "Merge above",
-    "1.5",
-    "1",
-    "",
-    "Particles merge where a cell has more of their size across it than this share of what the body has; 0: never.",
-    0.);
+  adaptivity.quantity("Split below",
+                      "0.7",
+                      "1",
+                      "",
+                      "Particles split where a cell has fewer of their size across it than this "
+                      "share of what the body has "
+                      "(its `Particles across a cell`); 0: never.",
+                      0.,
+                      0.99);
+  adaptivity.quantity("Merge above",
+                      "1.5",
+                      "1",
+                      "",
+                      "Particles merge where a cell has more of their size across it than this "
+                      "share of what the body has; 0: never.",
+                      0.);
 }
 
 template <int dim>
 ParticleRefinement<dim>::ParticleRefinement(const Parameters &adaptivity)
-  : split_below(adaptivity.quantity("Split below"))
-  , merge_above(adaptivity.quantity("Merge above"))
+  : split_below(adaptivity.quantity("Split below")), merge_above(adaptivity.quantity("Merge above"))
 {
   if (merge_above == 0)
     merge_above = std::numeric_limits<double>::infinity();
@@ -51,8 +50,8 @@ ParticleRefinement<dim>::ParticleRefinement(const Parameters &adaptivity)
   if (merge_above < 1.01 || merge_above < 1.5 * split_below)
     throw adaptivity.error("Merge above",
                            "particles would split and merge in turn",
-                           std::to_string(merge_above) + " with Split below = " +
-                             std::to_string(split_below),
+                           std::to_string(merge_above) +
+                             " with Split below = " + std::to_string(split_below),
                            "choose at least 1.01, and 1.5 times Split below");
 }
 
@@ -63,8 +62,9 @@ ParticleRefinement<dim>::largest_size(const MaterialPointSystem<dim> &points) co
   double size = 0;
   for (const auto &body : points.bodies)
     for (std::size_t row = 0; row < body.points.n_rows(); ++row)
-      size = std::max(size,
-                      body.points.column(Layout<dim>::size)[row] * std::max(1., body.radius_factor));
+      size =
+        std::max(size,
+                 body.points.column(Layout<dim>::size)[row] * std::max(1., body.radius_factor));
   return mpi::max(size, points.octree.triangulation.get_communicator());
 }
 
@@ -106,9 +106,8 @@ ParticleRefinement<dim>::find_splits(const MaterialPointBody<dim> &body,
   const auto        &points = body.points;
   for (const unsigned int leaf : points.occupied_cells())
     for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
-      if (!points.is_hole(row) &&
-          octree.size(leaf) <
-            split_below * body.particles_across * points.column(Layout<dim>::size)[row])
+      if (!points.is_hole(row) && octree.size(leaf) < split_below * body.particles_across *
+                                                        points.column(Layout<dim>::size)[row])
         {
           const Split split{row, SplitMerge<dim>::arm(points, row, octree.box())};
           if (may_split(body, split, distance))
@@ -138,8 +137,7 @@ ParticleRefinement<dim>::may_merge(const MaterialPointBody<dim>    &body,
   place /= mass;
   for (const unsigned int row : group)
     farthest = std::max(farthest, place.distance(points.position(row)));
-  const double needed =
-    std::max(1.01 * farthest, body.radius_factor * std::pow(box, 1. / dim));
+  const double needed = std::max(1.01 * farthest, body.radius_factor * std::pow(box, 1. / dim));
   return (*distance)(place, needed) >= needed;
 }
 
@@ -179,7 +177,7 @@ ParticleRefinement<dim>::find_groups(const MaterialPointBody<dim> &body,
   std::sort(members.begin(), members.end());
 
   std::vector<std::vector<unsigned int>> result;
-  const auto same_box = [&](const Member &a, const Member &b) {
+  const auto                             same_box = [&](const Member &a, const Member &b) {
     return std::equal(a.key.begin(), a.key.begin() + dim + n_sheets, b.key.begin());
   };
   const std::size_t most = static_cast<std::size_t>(largest_group * (1 << dim));

@@ -28,13 +28,15 @@ const std::vector<KindEntries> kinds = {
    "Refine above contact pressure",
    "Coarsen below contact pressure",
    "Pa",
-   "Mean force of the contacts of the cell's particles since the last adaptation over the area of a face of the cell.",
+   "Mean force of the contacts of the cell's particles since the last adaptation over the area of "
+   "a face of the cell.",
    false},
   {"free surface",
    "Refine within layers",
    "Coarsen beyond layers",
    "1",
-   "Layers of cells to the nearest cell with particles that has an empty neighbour; 0 is that cell itself.",
+   "Layers of cells to the nearest cell with particles that has an empty neighbour; 0 is that cell "
+   "itself.",
    true},
   {"velocity gradient",
    "Refine above velocity jump",
@@ -46,20 +48,28 @@ const std::vector<KindEntries> kinds = {
    "Refine above pressure jump",
    "Coarsen below pressure jump",
    "Pa",
-   "Largest difference between the mean pressures of the cell's particles and those of a neighbour's.",
+   "Largest difference between the mean pressures of the cell's particles and those of a "
+   "neighbour's.",
    false},
-  {"function", "Refine above", "Coarsen below", "1", "Value of the function in the cell's middle.", false}};
+  {"function",
+   "Refine above",
+   "Coarsen below",
+   "1",
+   "Value of the function in the cell's middle.",
+   false}};
 } // namespace
 
 template <int dim>
 void
 RefinementCriteria<dim>::declare(Declaration &adaptivity)
 {
-  Declaration &criterion = adaptivity.named_sections(
-    "Criteria",
-    "criterion",
-    "What makes cells finer and coarser while the run goes on. A cell becomes finer if any criterion asks "
-    "for it, and coarser if all let it. There is none for plastic strain, as no material is plastic yet.");
+  Declaration &criterion =
+    adaptivity.named_sections("Criteria",
+                              "criterion",
+                              "What makes cells finer and coarser while the run goes on. A cell "
+                              "becomes finer if any criterion asks "
+                              "for it, and coarser if all let it. There is none for plastic "
+                              "strain, as no material is plastic yet.");
   std::vector<std::string> names;
   for (const auto &kind : kinds)
     names.push_back(kind.kind);
@@ -71,7 +81,8 @@ RefinementCriteria<dim>::declare(Declaration &adaptivity)
                        "0",
                        kind.unit,
                        "",
-                       std::string(kind.meaning) + " Cells are refined on this side of the threshold.");
+                       std::string(kind.meaning) +
+                         " Cells are refined on this side of the threshold.");
       entries.quantity(kind.coarsen,
                        "0",
                        kind.unit,
@@ -83,7 +94,8 @@ RefinementCriteria<dim>::declare(Declaration &adaptivity)
       if (std::string(kind.kind) == "function")
         entries.function("Function", "0", "1", "Of place and time.");
     }
-  criterion.integer("Lowest level", 0, "Cells are nowhere coarser than this: bisections of the base cell.", 0, 12);
+  criterion.integer(
+    "Lowest level", 0, "Cells are nowhere coarser than this: bisections of the base cell.", 0, 12);
   criterion.integer("Highest level", 1, "This criterion makes cells no finer than this.", 0, 12);
 }
 
@@ -220,19 +232,19 @@ RefinementCriteria<dim>::evaluate(const Criterion            &criterion,
         for (unsigned int d = 0; d < dim; ++d)
           centre[d] += 0.5 * octree.size(leaf);
         result.leaf.push_back(value(centre, octree.size(leaf)));
-        result.parent.push_back(octree.level(leaf) > 0 ?
-                                  value(parent_centre(octree, leaf), 2 * octree.size(leaf)) :
-                                  result.leaf.back());
+        // Of use only where the leaf may become coarser.
+        result.parent.push_back(octree.level(leaf) > 0 && criterion.coarsens(result.leaf.back())
+                                  ? value(parent_centre(octree, leaf), 2 * octree.size(leaf))
+                                  : result.leaf.back());
       }
   };
   switch (criterion.kind)
     {
-      case Kind::surface:
-        {
-          const double                      limit = 1.01 * criterion.coarsen;
-          contact::SurfaceDistance<dim>     distance(octree.triangulation.get_communicator());
-          std::vector<contact::Box>         places;
-          const auto                        region = octree.owned_region();
+        case Kind::surface: {
+          const double                  limit = 1.01 * criterion.coarsen;
+          contact::SurfaceDistance<dim> distance(octree.triangulation.get_communicator());
+          std::vector<contact::Box>     places;
+          const auto                    region = octree.owned_region();
           if (n > 0)
             {
               places.emplace_back();
@@ -248,8 +260,7 @@ RefinementCriteria<dim>::evaluate(const Criterion            &criterion,
           at_places([&](const dealii::Point<dim> &centre, const double size) {
             // Of the ball around the cell.
             const double half = 0.5 * std::sqrt(double(dim)) * size;
-            return std::max(0.,
-                            distance.distance(centre, limit + half, criterion.surfaces) - half);
+            return std::max(0., distance.distance(centre, limit + half, criterion.surfaces) - half);
           });
           break;
         }
@@ -261,8 +272,7 @@ RefinementCriteria<dim>::evaluate(const Criterion            &criterion,
         break;
       case Kind::contact_pressure:
         for (unsigned int leaf = 0; leaf < n; ++leaf)
-          result.leaf.push_back(scene.contacts.force(leaf) /
-                                std::pow(octree.size(leaf), dim - 1));
+          result.leaf.push_back(scene.contacts.force(leaf) / std::pow(octree.size(leaf), dim - 1));
         break;
       case Kind::free_surface:
         result.leaf =

@@ -27,9 +27,9 @@ template <int dim>
 LeafPressure
 find_pressure(const MaterialPointSystem<dim> &points)
 {
-  using Layout       = ParticleLayout<dim>;
-  const auto  &octree = points.octree;
-  LeafPressure result{std::vector<double>(octree.n_leaves()),
+  using Layout               = ParticleLayout<dim>;
+  const auto         &octree = points.octree;
+  LeafPressure        result{std::vector<double>(octree.n_leaves()),
                       std::vector<double>(octree.n_leaves())};
   std::vector<double> volume(octree.n_leaves());
   for (const auto &body : points.bodies)
@@ -73,7 +73,7 @@ template <int dim>
 std::vector<double>
 layers_from_free_surface(const MaterialPointSystem<dim> &points, const unsigned int n_layers)
 {
-  const auto              &octree = points.octree;
+  const auto               &octree   = points.octree;
   const std::vector<double> occupied = find_pressure(points).occupied;
   std::vector<double>       layers(octree.n_leaves(), n_layers + 1.);
   for (unsigned int leaf = 0; leaf < octree.n_owned_leaves(); ++leaf)
@@ -100,8 +100,8 @@ template <int dim>
 std::vector<double>
 velocity_jump(const MaterialPointSystem<dim> &points)
 {
-  using Motion       = typename NodalField<dim>::Motion;
-  const auto &octree = points.octree;
+  using Motion                   = typename NodalField<dim>::Motion;
+  const auto             &octree = points.octree;
   std::vector<double>     result(octree.n_owned_leaves());
   std::array<double, dim> middle;
   middle.fill(0.5);
@@ -141,11 +141,11 @@ pressure_jump(const MaterialPointSystem<dim> &points)
   return result;
 }
 
-#define INSTANTIATE(dim)                                                                        \
-  template dealii::Point<dim>  parent_centre(const Octree<dim> &, const unsigned int);          \
-  template std::vector<double> layers_from_free_surface(const MaterialPointSystem<dim> &,       \
-                                                        const unsigned int);                    \
-  template std::vector<double> velocity_jump(const MaterialPointSystem<dim> &);                 \
+#define INSTANTIATE(dim)                                                                  \
+  template dealii::Point<dim>  parent_centre(const Octree<dim> &, const unsigned int);    \
+  template std::vector<double> layers_from_free_surface(const MaterialPointSystem<dim> &, \
+                                                        const unsigned int);              \
+  template std::vector<double> velocity_jump(const MaterialPointSystem<dim> &);           \
   template std::vector<double> pressure_jump(const MaterialPointSystem<dim> &);
 
 INSTANTIATE(2)

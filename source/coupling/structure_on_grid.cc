@@ -112,8 +112,7 @@ template <int dim>
 StructureOnGrid<dim>::StructureOnGrid(StructureSystem<dim> &structure,
                                       const Octree<dim>    &octree,
                                       MPI_Comm              comm)
-  : octree(octree)
-  , comm(comm)
+  : octree(octree), comm(comm)
 {
   octree_changed();
   for_each_body(structure, [this](auto &body, const unsigned int) {

@@ -210,9 +210,9 @@ template <int dim>
 void
 redistribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
 {
-  const MPI_Comm     comm  = octree.triangulation.get_communicator();
-  const int          me    = mpi::rank(comm);
-  const unsigned int width = points.columns.n_columns();
+  const MPI_Comm                              comm  = octree.triangulation.get_communicator();
+  const int                                   me    = mpi::rank(comm);
+  const unsigned int                          width = points.columns.n_columns();
   std::map<unsigned int, std::vector<double>> outgoing;
   for (std::size_t row = 0; row < points.n_rows(); ++row)
     if (!points.is_hole(row))
@@ -255,13 +255,13 @@ sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPo
   sort_rows(octree, margin_of_shape, cell, points);
 }
 
-#define INSTANTIATE(dim)                                          \
-  template unsigned int move_and_locate(const Octree<dim> &,      \
-                                        const BoxBoundary<dim> &, \
-                                        const double,             \
-                                        const double,             \
-                                        MaterialPoints<dim> &);   \
-  template void redistribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
+#define INSTANTIATE(dim)                                                                        \
+  template unsigned int move_and_locate(const Octree<dim> &,                                    \
+                                        const BoxBoundary<dim> &,                               \
+                                        const double,                                           \
+                                        const double,                                           \
+                                        MaterialPoints<dim> &);                                 \
+  template void         redistribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
   template void         sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
 
 INSTANTIATE(2)

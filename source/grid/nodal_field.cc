@@ -13,9 +13,7 @@ template <int dim>
 NodalField<dim>::NodalField(const Octree<dim>      &octree,
                             const BoxBoundary<dim> &boundary,
                             const NodeSplit<dim>   *split)
-  : octree(octree)
-  , boundary(boundary)
-  , split(split)
+  : octree(octree), boundary(boundary), split(split)
 {
   reinit();
 }

@@ -102,9 +102,7 @@ Octree<dim>::update_ghost_leaves(std::vector<double> &values) const
   using ActiveCell = typename dealii::Triangulation<dim>::active_cell_iterator;
   dealii::GridTools::exchange_cell_data_to_ghosts<double, dealii::Triangulation<dim>>(
     triangulation,
-    [&](const ActiveCell &cell) {
-      return values[leaf_of_active_cell[cell->active_cell_index()]];
-    },
+    [&](const ActiveCell &cell) { return values[leaf_of_active_cell[cell->active_cell_index()]]; },
     [&](const ActiveCell &cell, const double &value) {
       values[leaf_of_active_cell[cell->active_cell_index()]] = value;
     });
@@ -112,9 +110,7 @@ Octree<dim>::update_ghost_leaves(std::vector<double> &values) const
 
 template <int dim>
 unsigned int
-Octree<dim>::work_of(const Cell                &cell,
-                     const Status               status,
-                     const std::vector<double> &work) const
+Octree<dim>::work_of(const Cell &cell, const Status status, const std::vector<double> &work) const
 {
   const auto work_of_leaf = [&](const Cell &active) {
     return work[leaf_of_active_cell[active->active_cell_index()]];
@@ -142,10 +138,8 @@ template <int dim>
 void
 Octree<dim>::repartition(const std::vector<double> &work)
 {
-  const auto connection =
-    triangulation.signals.weight.connect([&](const Cell &cell, const Status status) {
-      return work_of(cell, status, work);
-    });
+  const auto connection = triangulation.signals.weight.connect(
+    [&](const Cell &cell, const Status status) { return work_of(cell, status, work); });
   triangulation.repartition();
   connection.disconnect();
   number();
@@ -192,11 +186,12 @@ Octree<dim>::close(const std::vector<int> &wanted) const
   const auto          families = find_families();
   std::vector<double> level(n_leaves());
   for (unsigned int leaf = 0; leaf < n_owned; ++leaf)
-    level[leaf] = std::max(leaf_level[leaf] - 1,
-                           std::min({leaf_level[leaf] + 1, std::max(wanted[leaf], least_level(leaf))}));
+    level[leaf] =
+      std::max(leaf_level[leaf] - 1,
+               std::min({leaf_level[leaf] + 1, std::max(wanted[leaf], least_level(leaf))}));
   for (bool changed = true; changed;)
     {
-      changed            = false;
+      changed             = false;
       const auto at_least = [&](const unsigned int leaf, const double value) {
         changed     = changed || level[leaf] < value;
         level[leaf] = std::max(level[leaf], value);
@@ -237,22 +232,20 @@ Octree<dim>::adapt(std::vector<int> wanted, const std::vector<double> &work)
   });
   if (!mpi::any(changed, triangulation.get_communicator()))
     return false;
-  const auto connection =
-    triangulation.signals.weight.connect([&](const Cell &cell, const Status status) {
-      return work_of(cell, status, work);
-    });
+  const auto connection = triangulation.signals.weight.connect(
+    [&](const Cell &cell, const Status status) { return work_of(cell, status, work); });
   triangulation.execute_coarsening_and_refinement();
   connection.disconnect();
   number();
   return true;
 }
 
-#define INSTANTIATE(dim)                                                                      \
-  template int  Octree<dim>::least_level(const unsigned int) const;                            \
-  template void Octree<dim>::find_first_places();                                              \
-  template int  Octree<dim>::owner_of(const dealii::Point<dim> &) const;                       \
-  template void Octree<dim>::update_ghost_leaves(std::vector<double> &) const;                 \
-  template void Octree<dim>::repartition(const std::vector<double> &);                         \
+#define INSTANTIATE(dim)                                                       \
+  template int  Octree<dim>::least_level(const unsigned int) const;            \
+  template void Octree<dim>::find_first_places();                              \
+  template int  Octree<dim>::owner_of(const dealii::Point<dim> &) const;       \
+  template void Octree<dim>::update_ghost_leaves(std::vector<double> &) const; \
+  template void Octree<dim>::repartition(const std::vector<double> &);         \
   template bool Octree<dim>::adapt(std::vector<int>, const std::vector<double> &);
 
 INSTANTIATE(2)

@@ -42,16 +42,15 @@ add_standard_columns(Statistics &statistics, const std::vector<std::string> &bod
   statistics.add_column("worst_gap", "m");
   statistics.add_column("contact_steps", "");
   statistics.add_column("unconverged_contact_steps", "");
-  for (const char *const name :
-       {"particles",
-        "particles.created",
-        "particles.removed",
-        "particles.converted",
-        "particles.split",
-        "particles.merged",
-        "particle_steps",
-        "cells",
-        "imbalance"})
+  for (const char *const name : {"particles",
+                                 "particles.created",
+                                 "particles.removed",
+                                 "particles.converted",
+                                 "particles.split",
+                                 "particles.merged",
+                                 "particle_steps",
+                                 "cells",
+                                 "imbalance"})
     statistics.add_column(name, "");
   for (const char *const name : {"kinetic",
                                  "internal",

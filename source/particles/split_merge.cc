@@ -59,7 +59,7 @@ SplitMerge<dim>::split(const std::size_t row, const Arm &arm, const std::uint64_
   const Moment                 c = affine(row);
   std::vector<double>          child(points.columns.n_columns());
   points.columns.get_row(row, child.data());
-  const double mass = child[Layout::mass] / n_children;
+  const double mass   = child[Layout::mass] / n_children;
   child[Layout::mass] = mass;
   child[Layout::size] *= 0.5;
   const double id = child[Layout::id];
@@ -109,7 +109,7 @@ SplitMerge<dim>::sum_up(const std::vector<unsigned int> &group) const
       const double                 m = points.column(Layout::mass)[row];
       const dealii::Tensor<1, dim> x = points.position(row) - result.place,
                                    v = velocity(row) - result.velocity;
-      const Moment                 c = affine(row);
+      const Moment c                 = affine(row);
       const double own = m * inertia_of_box * std::pow(points.column(Layout::size)[row], 2);
       result.turning += m * outer_product(v, x) + own * c;
       result.energy += 0.5 * m * v.norm_square() + 0.5 * own * c.norm_square();
@@ -176,7 +176,7 @@ SplitMerge<dim>::turn_together(std::vector<Merged> &merged)
       if (!(determinant(inertia) > 1e-6 * std::pow(trace(second), 3)))
         return energy <= round_off * kinetic;
       const dealii::Tensor<1, dim> spin({wanted[2][1], wanted[0][2], wanted[1][0]}),
-        w      = invert(inertia) * spin;
+        w            = invert(inertia) * spin;
       rotation[2][1] = w[0];
       rotation[0][2] = w[1];
       rotation[1][0] = w[2];

@@ -28,9 +28,9 @@ public:
   double operator()(const dealii::Point<dim> &place, const double limit) const;
 
   /// The same to some bodies: those with counts[body], by their index in Surface::bodies.
-  double
-  distance(const dealii::Point<dim> &place, const double limit, const std::vector<bool> &counts)
-    const;
+  double distance(const dealii::Point<dim> &place,
+                  const double              limit,
+                  const std::vector<bool>  &counts) const;
 
 private:
   FacetExchange<dim>                exchange;

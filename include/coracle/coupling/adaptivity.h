@@ -21,8 +21,8 @@ struct AdaptivityState
 };
 
 /**
- * Between steps: the octree becomes finer and coarser as criteria ask, particles split and merge with their
- * cells, and all is shared out among the ranks anew where the work has become uneven.
+ * Between steps: the octree becomes finer and coarser as criteria ask, particles split and merge
+ * with their cells, and all is shared out among the ranks anew where the work has become uneven.
  */
 template <int dim>
 class Adaptivity
@@ -53,9 +53,8 @@ public:
   AdaptivityState state;
 
 private:
-  bool due(const MaterialPointSystem<dim> &points,
-           StructureSystem<dim>           &structure,
-           const double                    dt);
+  bool
+  due(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
   /// True if cells or particles have changed.
   bool adapt(MaterialPointSystem<dim> &points,
              StructureSystem<dim>     &structure,

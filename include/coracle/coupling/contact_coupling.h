@@ -38,7 +38,8 @@ public:
   /// The octree has new leaves and nodes. Collective.
   void octree_changed(const MaterialPointSystem<dim> &points);
 
-  /// What contact did in the leaves of this rank since the octree changed or this was last forgotten.
+  /// What contact did in the leaves of this rank since the octree changed or this was last
+  /// forgotten.
   const LeafContacts &leaf_contacts() const { return in_leaves; }
   void                forget_leaf_contacts(const MaterialPointSystem<dim> &points)
   {

@@ -5,7 +5,8 @@
 
 namespace coracle
 {
-/// What contact does to the particles in each owned leaf, since the octree changed or was last looked at.
+/// What contact does to the particles in each owned leaf, since the octree changed or was last
+/// looked at.
 class LeafContacts
 {
 public:
@@ -34,7 +35,10 @@ public:
     return duration > 0 ? impulses[leaf] / duration : 0.;
   }
   /// Contacts in a step, on average.
-  double number(const unsigned int leaf) const { return n_steps > 0 ? numbers[leaf] / n_steps : 0.; }
+  double number(const unsigned int leaf) const
+  {
+    return n_steps > 0 ? numbers[leaf] / n_steps : 0.;
+  }
 
 private:
   std::vector<double> impulses, numbers;

@@ -67,8 +67,8 @@ public:
   double internal_energy = 0;
 
 private:
-  void generate(const Parameters &body, const Octree<dim> &octree);
-  void set_initial_pressure(const Parameters &body);
+  void        generate(const Parameters &body, const Octree<dim> &octree);
+  void        set_initial_pressure(const Parameters &body);
   static void declare_method(Declaration &body);
 
   double damping_rate, damping_end;

@@ -13,8 +13,8 @@ namespace coracle
  * too large for the cell they are in split, particles too small for it merge.
  *
  * It goes by sizes, not by numbers, so that spray does not split for being alone. Nothing passes a
- * surface by that: a child or merged particle keeps its contact distance and is nearer to where it came from than
- * any surface is; else the particle waits as it is.
+ * surface by that: a child or merged particle keeps its contact distance and is nearer to where it
+ * came from than any surface is; else the particle waits as it is.
  */
 template <int dim>
 class ParticleRefinement
@@ -34,7 +34,8 @@ public:
                       std::vector<std::uint64_t> &next_id) const;
 
 private:
-  /// Distance to surfaces from any place near this rank's particles; none where there are no structures.
+  /// Distance to surfaces from any place near this rank's particles; none where there are no
+  /// structures.
   using Distance = contact::SurfaceDistance<dim>;
 
   struct Split
@@ -47,17 +48,16 @@ private:
   std::vector<Split> find_splits(const MaterialPointBody<dim> &body,
                                  const Octree<dim>            &octree,
                                  const Distance               *distance) const;
-  bool               may_split(const MaterialPointBody<dim> &body,
-                               const Split                  &split,
-                               const Distance               *distance) const;
+  bool
+  may_split(const MaterialPointBody<dim> &body, const Split &split, const Distance *distance) const;
   /// Of one leaf.
   std::vector<std::vector<unsigned int>> find_groups(const MaterialPointBody<dim> &body,
                                                      const Octree<dim>            &octree,
                                                      const unsigned int            leaf,
                                                      const Distance               *distance) const;
-  bool may_merge(const MaterialPointBody<dim>    &body,
-                 const std::vector<unsigned int> &group,
-                 const Distance                  *distance) const;
+  bool                                   may_merge(const MaterialPointBody<dim>    &body,
+                                                   const std::vector<unsigned int> &group,
+                                                   const Distance                  *distance) const;
 
   /// In shares of the particles across a cell that the body has.
   double split_below, merge_above;

@@ -10,11 +10,13 @@
 namespace coracle
 {
 /**
- * Which leaves are to be finer or coarser: the finest that any criterion of the parameter file asks for.
+ * Which leaves are to be finer or coarser: the finest that any criterion of the parameter file asks
+ * for.
  *
- * A criterion compares a number of each leaf with two thresholds: beyond one of them it asks for a level
- * more, beyond the other it lets the leaf become coarser, in between the leaf stays as it is. Where the
- * number is known for any place, a leaf becomes coarser only if what it becomes would not be refined again at once.
+ * A criterion compares a number of each leaf with two thresholds: beyond one of them it asks for a
+ * level more, beyond the other it lets the leaf become coarser, in between the leaf stays as it is.
+ * Where the number is known for any place, a leaf becomes coarser only if what it becomes would not
+ * be refined again at once.
  */
 template <int dim>
 class RefinementCriteria
@@ -56,7 +58,10 @@ private:
 
     /// Is the leaf refined where the number is below the threshold?
     bool fine_below() const { return kind == Kind::surface || kind == Kind::free_surface; }
-    bool refines(const double value) const { return fine_below() ? value < refine : value > refine; }
+    bool refines(const double value) const
+    {
+      return fine_below() ? value < refine : value > refine;
+    }
     bool coarsens(const double value) const
     {
       return fine_below() ? value > coarsen : value < coarsen;

@@ -20,7 +20,8 @@ struct RefinementScene
   double                    time;
 };
 
-/// Calls action(other) for the leaves on the other side of the faces of a leaf, some of them repeatedly.
+/// Calls action(other) for the leaves on the other side of the faces of a leaf, some of them
+/// repeatedly.
 template <int dim, typename Action>
 void
 for_each_face_neighbour(const Octree<dim> &octree, const unsigned int leaf, const Action &action)
@@ -47,14 +48,14 @@ dealii::Point<dim> parent_centre(const Octree<dim> &octree, const unsigned int l
  * One number for each owned leaf. All are collective.
  */
 
-/// Layers of cells between a leaf and the nearest that holds particles and has an empty neighbour; those
-/// farther than n_layers have n_layers + 1.
+/// Layers of cells between a leaf and the nearest that holds particles and has an empty neighbour;
+/// those farther than n_layers have n_layers + 1.
 template <int dim>
 std::vector<double> layers_from_free_surface(const MaterialPointSystem<dim> &points,
                                              const unsigned int              n_layers);
 
-/// Norm of the velocity's gradient times the cell's size, the largest of all fields [m/s]; 0 where a
-/// corner has no mass.
+/// Norm of the velocity's gradient times the cell's size, the largest of all fields [m/s]; 0 where
+/// a corner has no mass.
 template <int dim>
 std::vector<double> velocity_jump(const MaterialPointSystem<dim> &points);
 

@@ -26,13 +26,12 @@ unsigned int move_and_locate(const Octree<dim>      &octree,
                              MaterialPoints<dim>    &points);
 
 /**
- * After the octree has changed: every particle goes to the rank whose leaf it is in, whichever that is now,
- * and all are sorted. Collective.
+ * After the octree has changed: every particle goes to the rank whose leaf it is in, whichever that
+ * is now, and all are sorted. Collective.
  */
 template <int dim>
-void redistribute(const Octree<dim>   &octree,
-                  const double         margin_of_shape,
-                  MaterialPoints<dim> &points);
+void
+redistribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points);
 
 /// Sort the particles by their leaf. All of them must be on this rank's leaves.
 template <int dim>

@@ -89,9 +89,9 @@ public:
 
   /**
    * Refine and coarsen by one level at most, and share out anew. Neighbours, also through edges and
-   * corners, end up to differ by one level at most: a leaf that asks for refinement has its way, one
-   * that asks for coarsening waits for its siblings and neighbours. The result is the same on any number of
-   * ranks. Collective.
+   * corners, end up to differ by one level at most: a leaf that asks for refinement has its way,
+   * one that asks for coarsening waits for its siblings and neighbours. The result is the same on
+   * any number of ranks. Collective.
    *
    * @param wanted level of each owned leaf (bisections of the base cell); the regions of the
    *        description stay at least as fine as they say
@@ -180,7 +180,8 @@ private:
   template <typename Action>
   void for_each_cell(const Action &action) const;
   /// Work of what a cell becomes, in thousandths; before the change.
-  unsigned int work_of(const Cell &cell, const Status status, const std::vector<double> &work) const;
+  unsigned int
+  work_of(const Cell &cell, const Status status, const std::vector<double> &work) const;
   /// Levels that can be had with 2:1 balance, for all leaves. Collective.
   std::vector<double> close(const std::vector<int> &wanted) const;
   /// The owned leaves of the same parent as an owned one, or nothing if not all are leaves.
@@ -203,8 +204,8 @@ private:
   /// Place along p4est's curve: of each coarse cell of the tree, and where each rank begins.
   std::vector<std::uint64_t>                           curve_of_coarse_cell;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> first_places;
-  std::vector<dealii::Point<dim>>                  positions;
-  std::vector<HangingNode>                         hanging;
-  std::vector<int>                                 node_to_hanging;
+  std::vector<dealii::Point<dim>>                      positions;
+  std::vector<HangingNode>                             hanging;
+  std::vector<int>                                     node_to_hanging;
 };
 } // namespace coracle

@@ -25,14 +25,14 @@ namespace coracle
  */
 struct EnergyBooks
 {
-  double kinetic       = 0; ///< particles, elements and rigid bodies
-  double internal      = 0; ///< stress work done on particles, and what merging took of their motion
-  double strain        = 0; ///< stress work done on elements so far
-  double hourglass     = 0; ///< work against hourglass stiffness
-  double damping       = 0; ///< taken out by damping so far
-  double contact       = 0; ///< taken out by contact (impact, friction) so far
-  double transfer      = 0; ///< taken out by particle-grid transfer so far
-  double boundary      = 0; ///< taken out at the faces of the box so far
+  double kinetic   = 0; ///< particles, elements and rigid bodies
+  double internal  = 0; ///< stress work done on particles, and what merging took of their motion
+  double strain    = 0; ///< stress work done on elements so far
+  double hourglass = 0; ///< work against hourglass stiffness
+  double damping   = 0; ///< taken out by damping so far
+  double contact   = 0; ///< taken out by contact (impact, friction) so far
+  double transfer  = 0; ///< taken out by particle-grid transfer so far
+  double boundary  = 0; ///< taken out at the faces of the box so far
   double external_work = 0; ///< gravity, loads, prescribed motion, particles that left
 
   double balance() const

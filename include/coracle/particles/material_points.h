@@ -14,7 +14,8 @@
 
 namespace coracle
 {
-/// created + split = present + removed + converted + merged, on all ranks together, after every step.
+/// created + split = present + removed + converted + merged, on all ranks together, after every
+/// step.
 struct ParticleLedger
 {
   std::uint64_t created = 0, removed = 0, converted = 0;

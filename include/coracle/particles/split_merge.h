@@ -16,13 +16,14 @@ namespace coracle
  *
  *   sum m,   sum m v,   sum m (x_p x v + axial vector of T),  T = s^2/12 C,
  *
- * stay what they were to round-off, and so does the centre of mass. Density, stress, history and deformation
- * gradient are copied to children, and averaged by volume when particles merge, so that the volume
- * is kept as well.
+ * stay what they were to round-off, and so does the centre of mass. Density, stress, history and
+ * deformation gradient are copied to children, and averaged by volume when particles merge, so that
+ * the volume is kept as well.
  *
- * Merged particles lie at the centre of mass of their group and have its velocity. What turned within a group is lost
- * by that. With C the merged particle takes it as its own turning. Without, all groups that are
- * merged together (those of one cell) take it as a common rotation about their centre.
+ * Merged particles lie at the centre of mass of their group and have its velocity. What turned
+ * within a group is lost by that. With C the merged particle takes it as its own turning. Without,
+ * all groups that are merged together (those of one cell) take it as a common rotation about their
+ * centre.
  */
 template <int dim>
 class SplitMerge
@@ -58,7 +59,8 @@ public:
    * Merge each group of rows; all of one list share their turning. The merged particle is in the
    * group's first row and has its least id, the others become holes.
    * @return false, and nothing is done, if the merged particles cannot take the turning over: where
-   *         there is but one of them, they are in a line, or it would cost more energy than merging loses
+   *         there is but one of them, they are in a line, or it would cost more energy than merging
+   * loses
    */
   bool merge(const std::vector<std::vector<unsigned int>> &groups);
 

@@ -200,7 +200,9 @@ private:
 
   bool changed = true;
   /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].
-  double                          reach = 0, used = 0, used_before = 0;
+  double reach = 0, used = 0, used_before = 0;
+  /// Steps since points or facets were last renumbered, and between the last two times; 0: unknown.
+  unsigned int                    steps_since_change = 0, change_interval = 0;
   std::vector<dealii::Point<dim>> positions_at_search;
 
   std::vector<Contact<dim>>                 list;

@@ -62,27 +62,33 @@ public:
                         const bool                 friction,
                         const IterationLimits     &limits,
                         std::vector<Vector>       &impulses,
-                        Velocities<dim>           &v);
+                        LaneVelocities<dim>       &v);
 
 private:
+  IterationReport iterate(Delassus<dim>             &delassus,
+                          const std::vector<double> &target,
+                          const bool                 friction,
+                          const IterationLimits     &limits,
+                          LaneVelocities<dim>       &v);
+
   /// One pass over the contacts in either direction; the largest change as a velocity [m/s].
   double sweep(const Delassus<dim>       &delassus,
                const std::vector<double> &target,
                const bool                 friction,
                const bool                 back,
-               std::vector<Vector>       &impulses,
-               Velocities<dim>           &v) const;
+               LaneVelocities<dim>       &v);
 
   /// Largest violation of the conditions above with everything held fixed, on this rank [m/s].
   double residual(const Delassus<dim>       &delassus,
                   const std::vector<double> &target,
                   const bool                 friction,
-                  const std::vector<Vector> &impulses,
-                  const Velocities<dim>     &v) const;
+                  const LaneVelocities<dim> &v) const;
 
-  MPI_Comm        communicator;
-  bool            accelerate;
-  Momentum<dim>   momentum;
-  Velocities<dim> before;
+  MPI_Comm            communicator;
+  bool                accelerate;
+  Momentum<dim>       momentum;
+  LaneVelocities<dim> before;
+  /// Accumulated impulses P.
+  std::vector<Lanes<dim>> impulses;
 };
 } // namespace coracle::contact

@@ -71,8 +71,8 @@ public:
   const Impulses<dim> &impulses() const { return result; }
   const SolverReport  &report() const { return statistics; }
 
-  /// Velocities of the unknowns and rigid bodies with contact, in the order they were given.
-  const Velocities<dim> &velocities() const { return velocity; }
+  /// What the impulses make of the predicted velocities.
+  Velocities<dim> velocities() const;
 
   /// What one step hands to the next.
   void serialize(Archive &archive)
@@ -95,7 +95,7 @@ private:
   Delassus<dim>       delassus;
   GaussSeidel<dim>    gauss_seidel;
   WarmStart<dim>      warm_start;
-  Velocities<dim>     velocity, displacement_rate;
+  LaneVelocities<dim> velocity, displacement_rate;
   std::vector<double> target;
   std::vector<bool>   active;
   Impulses<dim>       result;

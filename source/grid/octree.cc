@@ -94,8 +94,8 @@ Octree<dim>::refine()
     }
 }
 
-// Triangulation::load(file) shares the leaves out anew; here they stay with their ranks if there are as
-// many.
+// Triangulation::load(file) shares the leaves out anew; here they stay with their ranks if there
+// are as many.
 template <int dim>
 void
 Octree<dim>::load(const std::string &file)

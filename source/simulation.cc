@@ -233,7 +233,14 @@ private:
     log.out() << "\nstopped by " << loop.stopped_by << " at t = " << with_unit(coupling.time(), "s")
               << ", before the end time\n";
     if (loop.not_saved.empty())
-      log.out() << "go on with: coracle " << options.file << " --restart\n";
+      {
+        const unsigned int n = mpi::n_ranks(comm);
+        log.out() << "go on with: " << (n > 1 ? "mpirun -q -n " + std::to_string(n) + " " : "")
+                  << "coracle " << options.file << " --restart";
+        for (const std::string &assignment : options.assignments)
+          log.out() << " --set \"" << assignment << '"';
+        log.out() << '\n';
+      }
     else
       {
         verdict.outcome = Outcome::failed;

@@ -120,7 +120,7 @@ private:
     const auto               found = checkpoints.newest_good(complaints);
     std::string              all;
     for (const std::string &complaint : complaints)
-      all += complaint + "\n            ";
+      all += complaint + "\n";
     if (!found)
       throw UserError(
         "there is no checkpoint to go on from",

@@ -11,6 +11,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/grid/octree.h>
 
+#include <fstream>
 #include <map>
 
 namespace coracle
@@ -101,10 +102,17 @@ template <int dim>
 void
 Octree<dim>::load(const std::string &file)
 {
-  using p4est = dealii::internal::p4est::functions<dim>;
+  using p4est         = dealii::internal::p4est::functions<dim>;
+  const MPI_Comm comm = triangulation.get_communicator();
+  std::ifstream  info(file + ".info");
+  std::string    titles;
+  unsigned int   version = 0, n_saved = 0;
+  std::getline(info, titles);
+  info >> version >> n_saved;
   typename dealii::internal::p4est::types<dim>::connectivity *connectivity = nullptr;
-  auto *const                                                 forest       = p4est::load_ext(
-    file.c_str(), triangulation.get_communicator(), 0, 0, 0, 0, nullptr, &connectivity);
+
+  auto *const forest = p4est::load_ext(
+    file.c_str(), comm, 0, 0, n_saved != mpi::n_ranks(comm), 0, nullptr, &connectivity);
   triangulation.load(forest);
   p4est::destroy(forest);
   p4est::connectivity_destroy(connectivity);

@@ -143,6 +143,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write(Coupling<dim> &coupling)
 {
+  files_step     = coupling.step();
   unsigned int i = 0;
   for (auto &body : coupling.points.bodies)
     write_particles(body, particles[i++], coupling.time());
@@ -397,6 +398,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &coupling)
 {
+  row_step = coupling.step();
   statistics.begin_row();
   set_standard_columns(statistics, report);
   auto summary = report.bodies.end() - coupling.points.bodies.size();
@@ -461,6 +463,8 @@ CouplingOutput<dim>::serialize(Archive &archive)
   archive.same("reported_force", reported_force);
   archive.same("reported_time", reported_time);
   archive.same("first_report", first_report);
+  archive.same("files_step", files_step);
+  archive.same("row_step", row_step);
 }
 
 template class CouplingOutput<2>;

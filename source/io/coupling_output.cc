@@ -379,8 +379,12 @@ CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
       report.particles_created += mpi::sum(body.points.ledger.created, comm);
       report.particles_removed += mpi::sum(body.points.ledger.removed, comm);
       report.particles_converted += mpi::sum(body.points.ledger.converted, comm);
+      report.particles_split += mpi::sum(body.points.ledger.split, comm);
+      report.particles_merged += mpi::sum(body.points.ledger.merged, comm);
     }
-  report.energies = energies(coupling);
+  report.cells     = mpi::sum<std::uint64_t>(coupling.points.octree.n_owned_leaves(), comm);
+  report.imbalance = coupling.adaptivity.imbalance(coupling.points, coupling.contacts);
+  report.energies  = energies(coupling);
   if (first_report)
     balance.start(report.energies);
   first_report                = false;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <coracle/base/timer.h>
-#include <coracle/coupling/contact_coupling.h>
+#include <coracle/coupling/adaptivity.h>
 
 namespace coracle
 {
@@ -49,6 +49,7 @@ public:
   StructureSystem<dim>       structure;
   MaterialPointSystem<dim>   points;
   ContactCoupling<dim>       contacts;
+  Adaptivity<dim>            adaptivity;
   TimingTable                timed;
   /// At the start.
   typename ContactCoupling<dim>::Projected projected;

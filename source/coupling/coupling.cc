@@ -114,10 +114,26 @@ Coupling<dim>::serialize(Archive &archive)
   points.serialize(archive);
   contacts.serialize(archive, points);
   adaptivity.state.serialize(archive);
+  if (!archive.is_exact())
+    share_out();
   archive.share("particle_steps", particle_steps);
   archive.same("contact_steps", contact_steps);
   archive.same("unconverged_contact_steps", unconverged_contact_steps);
   archive.same("worst_gap", worst_gap);
+}
+
+// Other ranks get leaves in even numbers first. The next step is as long as it would have been.
+template <int dim>
+void
+Coupling<dim>::share_out()
+{
+  std::vector<StressSweep> sweeps;
+  for (const auto &body : points.bodies)
+    sweeps.push_back(body.sweep);
+  adaptivity.balance(points, contacts);
+  auto sweep = sweeps.begin();
+  for (auto &body : points.bodies)
+    body.sweep = *sweep++;
 }
 
 template <int dim>

@@ -11,8 +11,8 @@ namespace coracle::contact
 namespace
 {
 /// A point nearer than this part of the facet's size starts on the surface, and is thought this
-/// part of the smallest facet's size there off it.
-constexpr double on_surface = 1e-8, off_surface = 1e-9;
+/// part of the largest facet's size there off it: nearest points are good to 1e-10 of it.
+constexpr double on_surface = 1e-8, off_surface = 1e-7;
 /// Planes that are collected before less clearance is asked for.
 constexpr unsigned int most_planes = 32;
 constexpr double       squeezes[]  = {1., 0.2, 0.04};
@@ -58,11 +58,11 @@ ContinuousCheck<dim>::size_of(const unsigned int facet) const
 
 template <int dim>
 double
-ContinuousCheck<dim>::smallest_facet_at(const Surface<dim>       &surface,
-                                        const dealii::Point<dim> &x,
-                                        const PointOfSet         &point) const
+ContinuousCheck<dim>::largest_facet_at(const Surface<dim>       &surface,
+                                       const dealii::Point<dim> &x,
+                                       const PointOfSet         &point) const
 {
-  double   result = std::numeric_limits<double>::max();
+  double   result = 0;
   Vertices vertices;
   for (const unsigned int *f = point.first_facet; f != point.last_facet; ++f)
     {
@@ -72,19 +72,19 @@ ContinuousCheck<dim>::smallest_facet_at(const Surface<dim>       &surface,
       for (const auto &v : vertices)
         size = std::max(size, v.distance(vertices[0]));
       if (std::sqrt(nearest_on(x, vertices).distance_square) < on_surface * size_of(*f))
-        result = std::min(result, size);
+        result = std::max(result, size);
     }
-  return result < std::numeric_limits<double>::max() ? result : 0;
+  return result;
 }
 
 template <int dim>
-void
+bool
 ContinuousCheck<dim>::collect(const Surface<dim>       &surface,
                               const dealii::Point<dim> &begin,
                               const dealii::Point<dim> &end,
                               const PointOfSet         &point)
 {
-  near.clear();
+  const std::size_t n_known = near.size();
   for (const unsigned int *f = point.first_facet; f != point.last_facet; ++f)
     {
       const auto  &facet = surface.facets[*f];
@@ -96,7 +96,9 @@ ContinuousCheck<dim>::collect(const Surface<dim>       &surface,
       for (int d = 0; d < dim; ++d)
         apart |= (std::max(begin[d], end[d]) < box.lower[d] - room) |
                  (std::min(begin[d], end[d]) > box.upper[d] + room);
-      if (apart)
+      if (apart || std::any_of(near.begin(), near.begin() + n_known, [f](const Near &pair) {
+            return pair.facet == *f;
+          }))
         continue;
       Near pair;
       pair.facet = *f;
@@ -108,11 +110,12 @@ ContinuousCheck<dim>::collect(const Surface<dim>       &surface,
       pair.clearance = room;
       if (certainly_apart(begin, end, pair))
         continue;
-      const double distance = std::sqrt(nearest_on(begin, pair.start).distance_square);
-      pair.clearance        = std::min(room, 0.5 * distance);
+      const double distance   = std::sqrt(nearest_on(begin, pair.start).distance_square);
+      pair.greatest_clearance = pair.clearance = std::min(room, 0.5 * distance);
       if (distance > 0)
         near.push_back(pair);
     }
+  return near.size() > n_known;
 }
 
 template <int dim>
@@ -205,14 +208,14 @@ ContinuousCheck<dim>::keep_free(const dealii::Point<dim> &begin, dealii::Point<d
   const dealii::Point<dim> wanted = end;
   Meeting                  meeting{}, first{};
   unsigned int             which = 0, first_which = 0;
+  for (auto &pair : near)
+    pair.clearance = pair.greatest_clearance;
   if (!first_meeting(begin, end, first, first_which))
     return true;
-  double asked = 1;
   for (const double squeeze : squeezes)
     {
       for (auto &pair : near)
-        pair.clearance *= squeeze / asked;
-      asked = squeeze;
+        pair.clearance = squeeze * pair.greatest_clearance;
       planes.clear();
       end           = wanted;
       double growth = 2;
@@ -293,12 +296,16 @@ ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
                                       facets + candidates[s]->begin[i + 1],
                                       points[s].radius(p)};
         if (outward.norm_square() > 0)
-          begin += off_surface * smallest_facet_at(surface, begin, point) * outward;
-        collect(surface, begin, end, point);
-        if (near.empty())
-          continue;
+          begin += off_surface * largest_facet_at(surface, begin, point) * outward;
         const auto wanted = end;
-        const bool free   = keep_free(begin, end);
+        bool       free   = true;
+        near.clear();
+        // An end that has been changed may be near to other facets.
+        while (collect(surface, begin, end, point))
+          {
+            end  = wanted;
+            free = keep_free(begin, end);
+          }
         if (free && end == wanted)
           continue;
         ++report.n_resolved;

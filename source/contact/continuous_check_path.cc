@@ -10,6 +10,9 @@ namespace coracle::contact
 {
 namespace
 {
+/// A bilinear facet is cut into quarters this often.
+constexpr unsigned int most_cuts = 14;
+
 dealii::Tensor<1, 2>
 mean_normal(const std::array<dealii::Point<2>, 2> &x)
 {
@@ -96,27 +99,55 @@ ContinuousCheck<dim>::certainly_apart(const dealii::Point<dim> &begin,
   return result;
 }
 
-// Does the point stay on one side of a plane that moves with the facet, at least `kept` off it, and
-// the facet's remaining node on the other, from time t to s? Knows of turning, unlike a fixed
-// plane.
+namespace
+{
+/// Point and facet at two times.
+template <int dim>
+using Points = std::array<dealii::Point<dim>, 2>;
+template <int dim>
+using Facets = std::array<std::array<dealii::Point<dim>, vertices_per_facet<dim>>, 2>;
+
+bool
+is_quad(const Facets<2> &)
+{
+  return false;
+}
+
+bool
+is_quad(const Facets<3> &x)
+{
+  return !(x[0][3] == x[0][2] && x[1][3] == x[1][2]);
+}
+
+// Does the facet stay farther than `kept` along one direction, that from its middle to the point?
 template <int dim>
 bool
-ContinuousCheck<dim>::stays_off(const dealii::Point<dim> &begin,
-                                const dealii::Point<dim> &end,
-                                const Near               &facet,
-                                const double              t,
-                                const double              s)
+stays_behind_fixed_plane(const Points<dim> &p, const Facets<dim> &x, const double kept)
 {
-  const std::array<dealii::Point<dim>, 2> p = {{between(begin, end, t), between(begin, end, s)}};
-  const std::array<Vertices, 2>           x = {
-              {between(facet.start, facet.end, t), between(facet.start, facet.end, s)}};
-  const bool         quad = (dim == 3 && !(x[0][n_vertices - 1] == x[0][n_vertices - 2]));
+  dealii::Tensor<1, dim> direction;
+  for (unsigned int e = 0; e < 2; ++e)
+    for (const auto &corner : x[e])
+      direction += p[e] - corner;
+  const double length = direction.norm();
+  bool         result = (length > 0);
+  for (unsigned int e = 0; e < 2; ++e)
+    for (const auto &corner : x[e])
+      result &= ((p[e] - corner) * direction > kept * length);
+  return result;
+}
+
+// Does the point stay on one side of a plane that moves with the facet, at least `kept` off it, and
+// the facet's remaining node on the other? Knows of turning, unlike a fixed plane.
+template <int dim>
+bool
+stays_behind_moving_plane(const Points<dim> &p, const Facets<dim> &x, const double kept)
+{
+  const bool         quad = is_quad(x);
   const unsigned int n = (dim == 2 ? 2 : quad ? 4 : 3), n_tries = quad ? 4 : 1;
   for (unsigned int first = 0; first < n_tries; ++first)
     {
       using Vectors = std::array<dealii::Tensor<1, dim>, dim>;
       std::array<Vectors, 2> v, w;
-      double                 size = 0;
       for (unsigned int e = 0; e < 2; ++e)
         {
           for (unsigned int i = 1; i < dim; ++i)
@@ -128,21 +159,52 @@ ContinuousCheck<dim>::stays_off(const dealii::Point<dim> &begin,
       const auto longest = [&v](const unsigned int i) {
         return std::max(v[0][i].norm(), v[1][i].norm());
       };
-      size                     = (dim == 2 ? longest(1) : longest(1) * longest(dim - 1));
-      const auto   bounds      = volume_bounds<dim>(v[0], v[1]);
-      const double side        = (bounds[0] > 0 ? 1 : -1);
-      const double least       = (bounds[0] > 0 ? bounds[0] : -bounds[1]);
-      const double least_asked = 0.9 * facet.clearance * size;
-      if (least <= least_asked)
+      const double size   = (dim == 2 ? longest(1) : longest(1) * longest(dim - 1));
+      const auto   bounds = volume_bounds<dim>(v[0], v[1]);
+      const double side   = (bounds[0] > 0 ? 1 : -1);
+      const double least  = (bounds[0] > 0 ? bounds[0] : -bounds[1]);
+      if (least <= kept * size)
         continue;
       if (!quad)
         return true;
       const auto other = volume_bounds<dim>(w[0], w[1]);
-      if ((side > 0 ? other[1] : -other[0]) < 0.1 * least_asked)
+      if ((side > 0 ? other[1] : -other[0]) < 0.1 * kept * size)
         return true;
     }
   return false;
 }
+
+/// The quarter of a bilinear facet at a corner.
+std::array<dealii::Point<3>, 4>
+quarter(const std::array<dealii::Point<3>, 4> &x, const unsigned int corner)
+{
+  const unsigned int              next = (corner + 1) % 4, last = (corner + 3) % 4;
+  std::array<dealii::Point<3>, 4> result;
+  result[corner]           = x[corner];
+  result[next]             = between(x[corner], x[next], 0.5);
+  result[last]             = between(x[corner], x[last], 0.5);
+  result[(corner + 2) % 4] = between(between(x[0], x[1], 0.5), between(x[3], x[2], 0.5), 0.5);
+  return result;
+}
+
+// A warped facet is nearer to a plane in parts.
+template <int dim>
+bool
+stays_off(const Points<dim> &p, const Facets<dim> &x, const double kept, const unsigned int cuts)
+{
+  if (stays_behind_fixed_plane<dim>(p, x, kept) || stays_behind_moving_plane<dim>(p, x, kept))
+    return true;
+  if constexpr (dim == 3)
+    if (cuts > 0 && is_quad(x))
+      {
+        for (unsigned int corner = 0; corner < 4; ++corner)
+          if (!stays_off<3>(p, {{quarter(x[0], corner), quarter(x[1], corner)}}, kept, cuts - 1))
+            return false;
+        return true;
+      }
+  return false;
+}
+} // namespace
 
 template <int dim>
 bool
@@ -184,9 +246,18 @@ ContinuousCheck<dim>::meets(const dealii::Point<dim> &begin,
       double next = std::max(t + plane * (1 - t), t + (length - kept) / displacement);
       if (next >= 1)
         return false;
-      for (double part = 1; part > 0.01; part *= 0.25)
-        if (next < t + part * (1 - t) && stays_off(begin, end, facet, t, t + part * (1 - t)))
-          next = t + part * (1 - t);
+      for (double part = 1; part > 1e-3; part *= 0.25)
+        {
+          const double s = t + part * (1 - t);
+          if (s <= next)
+            break;
+          const Facets<dim> facets = {{x, between(facet.start, facet.end, s)}};
+          if (stays_off<dim>({{p, between(begin, end, s)}}, facets, kept, most_cuts))
+            {
+              next = s;
+              break;
+            }
+        }
       t = next;
       if (t >= 1)
         return false;

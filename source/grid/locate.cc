@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
 #include <coracle/grid/locate.h>
 #include <coracle/grid/transfer.h>
 
@@ -211,12 +212,52 @@ sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPo
       }
 }
 
-#define INSTANTIATE(dim)                                          \
-  template unsigned int move_and_locate(const Octree<dim> &,      \
-                                        const BoxBoundary<dim> &, \
-                                        const double,             \
-                                        const double,             \
-                                        MaterialPoints<dim> &);   \
+template <int dim>
+void
+distribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
+{
+  // Who owns a far leaf is not known here, but the boxes around what ranks own are: all who may own
+  // it get the particle, and the one that does keeps it.
+  const MPI_Comm      comm     = octree.triangulation.get_communicator();
+  const auto          boxes    = dealii::Utilities::MPI::all_gather(comm, octree.owned_region());
+  const unsigned int  width    = points.columns.n_columns();
+  const std::uint64_t n_before = mpi::sum<std::uint64_t>(points.n_particles(), comm);
+  std::map<unsigned int, std::vector<double>> to_send;
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    for (unsigned int rank = 0; rank < boxes.size() && !points.is_hole(row); ++rank)
+      if (boxes[rank].point_inside(points.position(row), 1e-12))
+        {
+          auto &rows = to_send[rank];
+          rows.resize(rows.size() + width);
+          points.columns.get_row(row, rows.data() + rows.size() - width);
+        }
+  points.clear();
+  dealii::Point<dim> x;
+  for (const auto &[rank, rows] : mpi::exchange_values(to_send, comm))
+    for (std::size_t first = 0; first < rows.size(); first += width)
+      {
+        for (int d = 0; d < dim; ++d)
+          x[d] = rows[first + Layout<dim>::position + d];
+        const int leaf = octree.find(x);
+        if (leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves()))
+          points.append(rows.data() + first);
+      }
+  const std::uint64_t n_after = mpi::sum<std::uint64_t>(points.n_particles(), comm);
+  if (n_after != n_before)
+    throw RunFailure("particles have no cell",
+                     std::to_string(n_before) + " particles of '" + points.name() + "', of which " +
+                       std::to_string(n_after) + " found their cells",
+                     "this is an error of the program: please report it with the case");
+  sort_by_leaf(octree, margin_of_shape, points);
+}
+
+#define INSTANTIATE(dim)                                                                      \
+  template unsigned int move_and_locate(const Octree<dim> &,                                  \
+                                        const BoxBoundary<dim> &,                             \
+                                        const double,                                         \
+                                        const double,                                         \
+                                        MaterialPoints<dim> &);                               \
+  template void         distribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
   template void         sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
 
 INSTANTIATE(2)

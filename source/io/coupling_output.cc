@@ -440,6 +440,25 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   statistics.end_row();
 }
 
+template <int dim>
+void
+CouplingOutput<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "output");
+  mpi::agree([&] { statistics.serialize(archive); }, comm);
+  for (auto &series : particles)
+    series.serialize(archive);
+  for (auto &series : structures)
+    series.serialize(archive);
+  if (octree)
+    octree->serialize(archive);
+  balance.serialize(archive);
+  archive.same("reported_momentum", reported_momentum);
+  archive.same("reported_force", reported_force);
+  archive.same("reported_time", reported_time);
+  archive.same("first_report", first_report);
+}
+
 template class CouplingOutput<2>;
 template class CouplingOutput<3>;
 } // namespace coracle

@@ -92,7 +92,8 @@ private:
   void make_surface(const Profile &profile);
   void extrude(const Profile &profile);
   void make_motion(const Profile &profile);
-  void make_points(const unsigned int n);
+  void make_points(const Profile &profile, const unsigned int n);
+  bool starts_inside(const Profile &profile, const dealii::Point<dim> &x) const;
   void turn_everything();
 
   dealii::Point<dim> place_at(const unsigned int node, const double time) const;
@@ -112,7 +113,7 @@ private:
   std::vector<dealii::Point<dim>> drawn;
   std::vector<unsigned int>       group;
   std::vector<GroupMotion<dim>>   motions;
-  double                          node_mass = 1;
+  double                          node_mass = 1, warp = 0;
   std::vector<RigidUnknown<dim>>  rigid;
   unsigned int                    n_sheets = 0;
   double                          time     = 0;
@@ -156,7 +157,7 @@ Scene<dim>::Scene(const unsigned long seed, const int wanted_shape, MPI_Comm com
 
   make_surface(profile);
   make_motion(profile);
-  make_points(dim == 2 ? 60 : 80);
+  make_points(profile, dim == 2 ? 60 : 80);
   if (random.chance(0.5))
     turn_everything();
   // Grid nodes lie anywhere relative to the surface.
@@ -216,9 +217,8 @@ Scene<3>::extrude(const Profile &profile)
   const double depth   = (profile.name == "slivers" ? std::min(6., facet * random.uniform(0.5, 1))
                                                     : std::min(6., std::max(facet, 1.) * n_layers));
   const unsigned int n = profile.nodes.size();
-  const double       warp = random.chance(0.3) && kind == SurfaceKind::sheet
-                              ? random.uniform(0, 0.15) * std::min(facet, depth / n_layers)
-                              : 0.;
+  if (random.chance(0.3) && kind == SurfaceKind::sheet)
+    warp = random.uniform(0, 0.15) * std::min(facet, depth / n_layers);
   for (unsigned int l = 0; l <= n_layers; ++l)
     for (unsigned int i = 0; i < n; ++i)
       {
@@ -351,13 +351,36 @@ Scene<dim>::make_motion(const Profile &profile)
       motions[0].axis[2] = other.axis[2] = 1;
       const double R                     = radius + 0.5 * thickness;
       other.velocity[1]                  = -speed * random.uniform(0.2, 1);
-      other.largest_shift                = 2 - std::max(2 * R, 1e-3) * random.uniform(1.1, 3);
+      // Surfaces that pass through each other leave no place for what is between.
+      other.largest_shift =
+        std::max(1e-3, 2 - 2 * warp - std::max(2 * R, 1e-3) * random.uniform(1.1, 3));
     }
+}
+
+/// Is the place inside a closed body, as drawn?
+template <int dim>
+bool
+Scene<dim>::starts_inside(const Profile &profile, const dealii::Point<dim> &x) const
+{
+  if (kind != SurfaceKind::closed)
+    return false;
+  if constexpr (dim == 3)
+    if (std::abs(x[2]) > drawn.back()[2])
+      return false;
+  bool inside = false;
+  for (const auto &segment : profile.segments)
+    {
+      const auto &a = profile.nodes[segment[0]], &b = profile.nodes[segment[1]];
+      if ((a[1] > x[1]) != (b[1] > x[1]) &&
+          x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+        inside = !inside;
+    }
+  return inside;
 }
 
 template <int dim>
 void
-Scene<dim>::make_points(const unsigned int n)
+Scene<dim>::make_points(const Profile &profile, const unsigned int n)
 {
   const double R       = radius + 0.5 * thickness;
   const bool   one_way = random.chance(0.5), pressed = random.chance(0.5);
@@ -415,6 +438,9 @@ Scene<dim>::make_points(const unsigned int n)
       for (int d = 0; d < dim; ++d)
         v[d] = drift[d] + 0.2 * random.uniform(-1, 1);
       v = speed * (v - random.uniform(0.2, 1) * normal) / 1.5;
+      // No overlaps to start with: they are refused in a case.
+      if (away > 0 && starts_inside(profile, x + away * normal))
+        continue;
       if (i % n_ranks_ == static_cast<unsigned int>(rank))
         points.add(i, x + away * normal, v, pressed ? -0.05 * speed / dt * normal : Vector());
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/contact/audit_path.h>
 #include <coracle/contact/global_search.h>
 
@@ -57,6 +58,9 @@ public:
 
   /// Of the last step, on this rank.
   const std::vector<Crossing<dim>> &crossings() const { return last; }
+
+  /// How many there were; the first ones are forgotten.
+  void serialize(Archive &archive) { archive.share("n_crossings", total); }
 
   static constexpr unsigned int n_kept = 5;
 

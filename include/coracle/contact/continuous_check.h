@@ -73,12 +73,13 @@ private:
   static constexpr unsigned int n_vertices = vertices_per_facet<dim>;
   using Vertices                           = std::array<dealii::Point<dim>, n_vertices>;
 
-  /// A facet within reach of the present point, and how near the point may come to it [m].
+  /// A facet within reach of the present point, and how near the point may come to it, now and at
+  /// first [m].
   struct Near
   {
     unsigned int facet;
     Vertices     start, end;
-    double       clearance;
+    double       clearance, greatest_clearance;
   };
 
   /// The first time at which a point is too near; nearest point then, and the way to the point.
@@ -111,11 +112,11 @@ private:
 
   double size_of(const unsigned int facet) const;
   /// Of the facets that the point is on at the start [m].
-  double smallest_facet_at(const Surface<dim>       &surface,
-                           const dealii::Point<dim> &x,
-                           const PointOfSet         &point) const;
-  /// Fills `near` with the facets of a point whose boxes the path touches.
-  void collect(const Surface<dim>       &surface,
+  double largest_facet_at(const Surface<dim>       &surface,
+                          const dealii::Point<dim> &x,
+                          const PointOfSet         &point) const;
+  /// Adds the facets of a point that the path may meet to `near`; false if it has them all.
+  bool collect(const Surface<dim>       &surface,
                const dealii::Point<dim> &begin,
                const dealii::Point<dim> &end,
                const PointOfSet         &point);
@@ -128,11 +129,6 @@ private:
   static bool              certainly_apart(const dealii::Point<dim> &begin,
                                            const dealii::Point<dim> &end,
                                            const Near               &facet);
-  static bool              stays_off(const dealii::Point<dim> &begin,
-                                     const dealii::Point<dim> &end,
-                                     const Near               &facet,
-                                     const double              t,
-                                     const double              s);
   static bool              meets(const dealii::Point<dim> &begin,
                                  const dealii::Point<dim> &end,
                                  const Near               &facet,

@@ -33,6 +33,10 @@ public:
 
   void write_statistics(const Report<dim> &report, Coupling<dim> &coupling);
 
+  /// What has been written and reported. Collective; when loaded, files that came later are cut or
+  /// forgotten.
+  void serialize(Archive &archive);
+
 private:
   void
   write_particles(const MaterialPointBody<dim> &body, ParticleOutput &output, const double time);

@@ -102,7 +102,8 @@ private:
     CouplingOutput<dim>      &output;
     Progress                 &progress;
     RunControl               &control;
-    Report<dim>               report     = {};
+    Report<dim>               report         = {};
+    std::int64_t              step_of_report = -1, step_of_line = -1;
     std::string               stopped_by = "", not_saved = "";
   };
 
@@ -119,7 +120,7 @@ private:
     const auto               found = checkpoints.newest_good(complaints);
     std::string              all;
     for (const std::string &complaint : complaints)
-      all += complaint + "\n            ";
+      all += complaint + "\n";
     if (!found)
       throw UserError(
         "there is no checkpoint to go on from",
@@ -160,7 +161,7 @@ private:
         // before the checkpoint that the run goes on from.
         const Wanted due{write.due(t, n), statistics.due(t, n), line.due(t, n)};
         if (!told_before)
-          tell(loop, due, {false, false, false});
+          tell(loop, due);
         const auto orders = loop.control.ask(t, n);
         const bool ended  = t >= end_time * (1 - 1e-14);
         if ((orders.checkpoint || (ended && loop.saving.by_itself)) && !told_before)
@@ -168,7 +169,7 @@ private:
         if (orders.stop || ended)
           {
             // Not of the state that is saved: a run that goes on has these where they are due.
-            tell(loop, {true, true, true}, told_before ? Wanted{false, false, false} : due);
+            tell(loop, {true, true, true});
             if (!ended)
               loop.stopped_by = orders.reason;
             return;
@@ -178,23 +179,29 @@ private:
   }
 
   /// What is wanted and has not been told of this moment.
-  void tell(Loop &loop, const Wanted &wanted, const Wanted &told)
+  void tell(Loop &loop, const Wanted &wanted)
   {
-    const bool row = wanted.row && !told.row, line = wanted.line && !told.line;
-    if (wanted.fields && !told.fields)
+    const auto n    = static_cast<std::int64_t>(coupling.step());
+    const bool row  = wanted.row && loop.output.step_of_row() != n;
+    const bool line = wanted.line && loop.step_of_line != n;
+    if (wanted.fields && loop.output.step_of_files() != n)
       coupling.timed("output", [&] { loop.output.write(coupling); });
     if (row || line)
       coupling.timed("report", [&] {
         // A report ends the time over which forces are means: one for a moment.
-        if (!told.row && !told.line)
+        if (loop.step_of_report != n)
           {
-            loop.report = loop.output.make_report(coupling);
+            loop.report         = loop.output.make_report(coupling);
+            loop.step_of_report = n;
             check_while_running(loop.report, loop.settings.limits);
           }
         if (row)
           loop.output.write_statistics(loop.report, coupling);
         if (line)
-          loop.progress.line(loop.report);
+          {
+            loop.progress.line(loop.report);
+            loop.step_of_line = n;
+          }
         log.report();
       });
   }
@@ -226,7 +233,14 @@ private:
     log.out() << "\nstopped by " << loop.stopped_by << " at t = " << with_unit(coupling.time(), "s")
               << ", before the end time\n";
     if (loop.not_saved.empty())
-      log.out() << "go on with: coracle " << options.file << " --restart\n";
+      {
+        const unsigned int n = mpi::n_ranks(comm);
+        log.out() << "go on with: " << (n > 1 ? "mpirun -q -n " + std::to_string(n) + " " : "")
+                  << "coracle " << options.file << " --restart";
+        for (const std::string &assignment : options.assignments)
+          log.out() << " --set \"" << assignment << '"';
+        log.out() << '\n';
+      }
     else
       {
         verdict.outcome = Outcome::failed;

@@ -397,6 +397,8 @@ ContactSystem<dim>::serialize(Archive &archive)
   archive.own("changed", changed);
   archive.own("reach", reach);
   archive.own("used", used);
+  archive.same("steps_since_change", steps_since_change);
+  archive.same("change_interval", change_interval);
   archive.own("positions_at_search", positions_at_search);
   {
     const Archive::Section part(archive, "facets");

@@ -89,6 +89,14 @@ ContactCoupling<dim>::find(MaterialPointSystem<dim> &points,
 }
 
 template <int dim>
+void
+ContactCoupling<dim>::octree_changed(const MaterialPointSystem<dim> &points)
+{
+  on_grid.octree_changed();
+  in_leaves.reinit(points.octree.n_owned_leaves());
+}
+
+template <int dim>
 template <typename Action>
 void
 ContactCoupling<dim>::for_each_node(const MaterialPointSystem<dim> &points,
@@ -187,12 +195,18 @@ ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
       return unknown;
     });
   system.solve(structure.rigid_unknowns(), dt);
+  in_leaves.begin_step(dt);
   if (system.report().n_contacts == 0)
     return;
   received.resize(points.bodies.size());
   for (unsigned int c = 0; c < system.contacts().size(); ++c)
-    if (system.contacts()[c].set < received.size())
-      received[system.contacts()[c].set] += system.impulses().impulse[c];
+    if (const auto &contact = system.contacts()[c]; contact.set < received.size())
+      {
+        const auto &impulse = system.impulses().impulse[c];
+        received[contact.set] += impulse;
+        const auto &body = *std::next(points.bodies.begin(), contact.set);
+        in_leaves.add(points.octree.find(body.points.position(contact.point)), impulse.norm());
+      }
 
   system.point_impulses([&](const unsigned int number, const auto &p, const auto &c) {
     fields[number / n_nodes]->add_impulse(number % n_nodes, p, c);
@@ -250,6 +264,10 @@ ContactCoupling<dim>::serialize(Archive &archive, MaterialPointSystem<dim> &poin
   {
     const Archive::Section part(archive, "report_with_grid");
     report_with_grid.serialize(archive);
+  }
+  {
+    const Archive::Section part(archive, "leaf_contacts");
+    in_leaves.serialize(archive, points.octree.n_owned_leaves());
   }
   // What is known of points since they were numbered has not changed since.
   if (archive.loads())

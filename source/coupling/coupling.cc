@@ -61,6 +61,7 @@ Coupling<dim>::declare(Declaration &root)
     root.section("Grid", "The background grid of material points: a box of square or cubic cells.");
   OctreeDescription<dim>::declare(grid);
   BoxBoundary<dim>::declare(grid);
+  Adaptivity<dim>::declare(grid);
   MaterialLibrary::declare(root);
   Declaration &body =
     root.named_sections("Bodies", "body", "Everything that moves, each with a name.");
@@ -91,10 +92,14 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
   , structure(root, materials, options.gravity, comm)
   , points(root, materials, options.gravity, structure.n_sheets(), comm, saved_octree)
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
+  , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
   , comm(comm)
 {
   if (saved_octree.empty())
-    projected = contacts.resolve_initial_overlaps(root, points, structure);
+    {
+      projected = contacts.resolve_initial_overlaps(root, points, structure);
+      adaptivity.initialise(points, structure, contacts);
+    }
 }
 
 template <int dim>
@@ -108,10 +113,27 @@ Coupling<dim>::serialize(Archive &archive)
   structure.serialize(archive);
   points.serialize(archive);
   contacts.serialize(archive, points);
+  adaptivity.state.serialize(archive);
+  if (!archive.is_exact())
+    share_out();
   archive.share("particle_steps", particle_steps);
   archive.same("contact_steps", contact_steps);
   archive.same("unconverged_contact_steps", unconverged_contact_steps);
   archive.same("worst_gap", worst_gap);
+}
+
+// Other ranks get leaves in even numbers first. The next step is as long as it would have been.
+template <int dim>
+void
+Coupling<dim>::share_out()
+{
+  std::vector<StressSweep> sweeps;
+  for (const auto &body : points.bodies)
+    sweeps.push_back(body.sweep);
+  adaptivity.balance(points, contacts);
+  auto sweep = sweeps.begin();
+  for (auto &body : points.bodies)
+    body.sweep = *sweep++;
 }
 
 template <int dim>
@@ -171,6 +193,7 @@ Coupling<dim>::advance(const double end_time)
     points.locate(current_time);
     timed.count("particle", points.n_particles());
   });
+  timed("adapt", [&] { adaptivity.update(points, structure, contacts, current_time, dt); });
   timed("checks", [&] { check_state(); });
   count_work();
 }

@@ -59,6 +59,16 @@ FieldSplit<dim>::FieldSplit(const Octree<dim> &octree)
 
 template <int dim>
 void
+FieldSplit<dim>::octree_changed()
+{
+  smallest_cell = octree.smallest_cell_size();
+  searched      = false;
+  node_places.clear();
+  asked_nodes.clear();
+}
+
+template <int dim>
+void
 FieldSplit<dim>::update(const contact::Surface<dim>       &surface,
                         std::list<MaterialPointBody<dim>> &bodies,
                         NodeSplit<dim>                    &split)

@@ -21,12 +21,9 @@ GridContact<dim>::GridContact(const Options            &options,
                               MaterialPointSystem<dim> &points,
                               StructureSystem<dim>     &structure,
                               MPI_Comm                  comm)
-  : octree(points.octree)
-  , comm(comm)
-  , cell_size(octree.smallest_cell_size())
-  , momenta(points.bodies.size())
+  : octree(points.octree), comm(comm), momenta(points.bodies.size())
 {
-  const unsigned int n_fields = points.fields.size(), n_nodes = octree.n_nodes();
+  const unsigned int n_fields = points.fields.size();
   if (options.between_fields)
     for (unsigned int r = 0; r < n_fields; ++r)
       for (unsigned int s = r + 1; s < n_fields; ++s)
@@ -34,14 +31,32 @@ GridContact<dim>::GridContact(const Options            &options,
   if (options.with_structures && !structure.empty())
     {
       structures = std::make_unique<StructureOnGrid<dim>>(structure, octree, comm);
-      bodies.assign(structures->n_bodies(), GridParticipant<dim>(n_nodes));
-      for (unsigned int b = 0; b < bodies.size(); ++b)
+      for (unsigned int b = 0; b < structures->n_bodies(); ++b)
         for (unsigned int s = 0; s < n_fields; ++s)
           pairs.push_back({n_fields + b, s, structures->friction(b)});
     }
+  make_participants(n_fields);
+}
+
+template <int dim>
+void
+GridContact<dim>::octree_changed()
+{
+  if (structures)
+    structures->octree_changed();
+  make_participants(fields.size());
+}
+
+template <int dim>
+void
+GridContact<dim>::make_participants(const unsigned int n_fields)
+{
   if (pairs.empty())
     return;
+  const unsigned int n_nodes = octree.n_nodes();
+  cell_size                  = octree.smallest_cell_size();
   fields.assign(n_fields, GridParticipant<dim>(n_nodes));
+  bodies.assign(structures ? structures->n_bodies() : 0, GridParticipant<dim>(n_nodes));
   is_shared.resize(n_nodes);
   is_met.resize(n_nodes);
   normals.resize(n_nodes);

@@ -141,6 +141,14 @@ MaterialPointBody<dim>::declare_method(Declaration &body)
                 0.,
                 2.);
   body.quantity(
+    "Particles across a cell",
+    "0",
+    "1",
+    "",
+    "With adaptivity: particles along an edge of a cell, which splitting and merging keep up in "
+    "finer and coarser cells; 0: the largest number that the body starts with.",
+    0.);
+  body.quantity(
     "Damping", "0", "1/s", "c", "Mass-proportional damping: velocities decay as exp(-c t).", 0.);
   body.quantity("Damping until", "1e300", "s", "", "Time at which damping ends.");
 }
@@ -158,6 +166,7 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
   , volume_smoothing(body.quantity("Volume smoothing"))
   , field_name(body.text("Velocity field"))
   , radius_factor(body.quantity("Contact radius"))
+  , particles_across(body.quantity("Particles across a cell"))
   , damping_rate(body.quantity("Damping"))
   , damping_end(body.quantity("Damping until"))
 {
@@ -233,16 +242,26 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
   initialise_particle_stress<dim>(material, points);
   sort_by_leaf(octree, margin_of_shape(), points);
   find_rates(octree);
+  if (particles_across == 0)
+    {
+      double largest = 0;
+      for (const unsigned int leaf : points.occupied_cells())
+        largest = std::max(largest, octree.size(leaf));
+      particles_across = mpi::max(largest, octree.triangulation.get_communicator()) / size;
+    }
 }
 
 template <int dim>
 void
 MaterialPointBody<dim>::find_rates(const Octree<dim> &octree)
 {
-  using Layout        = ParticleLayout<dim>;
-  double largest_rate = 0;
+  using Layout         = ParticleLayout<dim>;
+  double largest_rate  = 0;
+  sweep.diffusion_rate = 0;
   for (std::size_t row = 0; row < points.n_rows(); ++row)
     {
+      if (points.is_hole(row))
+        continue;
       double square = 0;
       for (int d = 0; d < dim; ++d)
         square += std::pow(points.column(Layout::velocity + d)[row], 2);

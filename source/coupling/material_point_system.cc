@@ -67,7 +67,7 @@ MaterialPointSystem<dim>::serialize(Archive &archive)
     {
       body.serialize(archive);
       if (!archive.is_exact())
-        distribute(octree, body.margin_of_shape(), body.points);
+        redistribute(octree, body.margin_of_shape(), body.points);
     }
   archive.share("energy.kinetic", energy.kinetic);
   archive.share("energy.internal", energy.internal);
@@ -386,12 +386,51 @@ MaterialPointSystem<dim>::locate(const double time)
           failure.emplace(lost);
       }
   if (++steps_since_sort >= steps_between_sorts)
+    sort();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::sort()
+{
+  for (auto &body : bodies)
+    sort_by_leaf(octree, body.margin_of_shape(), body.points);
+  steps_since_sort = 0;
+  renumbered       = true;
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::octree_changed()
+{
+  boundary.reinit(octree);
+  split.reinit();
+  sides.octree_changed();
+  for (auto &f : fields)
+    f.reinit();
+  redistribute_particles();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::redistribute_particles()
+{
+  for (auto &body : bodies)
     {
-      for (auto &body : bodies)
-        sort_by_leaf(octree, body.margin_of_shape(), body.points);
-      steps_since_sort = 0;
-      renumbered       = true;
+      redistribute(octree, body.margin_of_shape(), body.points);
+      body.find_rates(octree);
     }
+  steps_since_sort = 0;
+  renumbered       = true;
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::book_split_merge(MaterialPointBody<dim> &body, const double lost)
+{
+  energy.kinetic -= lost;
+  energy.internal += lost;
+  body.internal_energy += lost;
 }
 
 template <int dim>
@@ -419,11 +458,7 @@ MaterialPointSystem<dim>::ledger_error() const
 {
   std::int64_t error = 0;
   for (const auto &body : bodies)
-    {
-      const ParticleLedger &ledger = body.points.ledger;
-      error += std::int64_t(ledger.created) - std::int64_t(ledger.removed) -
-               std::int64_t(ledger.converted) - std::int64_t(body.points.n_particles());
-    }
+    error += body.points.ledger.expected() - std::int64_t(body.points.n_particles());
   return mpi::sum(error, octree.triangulation.get_communicator());
 }
 

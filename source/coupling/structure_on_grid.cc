@@ -112,10 +112,9 @@ template <int dim>
 StructureOnGrid<dim>::StructureOnGrid(StructureSystem<dim> &structure,
                                       const Octree<dim>    &octree,
                                       MPI_Comm              comm)
-  : octree(octree)
-  , comm(comm)
-  , regions(dealii::Utilities::MPI::all_gather(comm, octree.owned_region()))
+  : octree(octree), comm(comm)
 {
+  octree_changed();
   for_each_body(structure, [this](auto &body, const unsigned int) {
     node_mass.push_back(lumped_mass(body));
     frictions.push_back(body.friction());
@@ -124,6 +123,13 @@ StructureOnGrid<dim>::StructureOnGrid(StructureSystem<dim> &structure,
   });
   for (auto &body : structure.solids)
     body.contact_through_volume();
+}
+
+template <int dim>
+void
+StructureOnGrid<dim>::octree_changed()
+{
+  regions = dealii::Utilities::MPI::all_gather(comm, octree.owned_region());
 }
 
 template <int dim>

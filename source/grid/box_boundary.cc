@@ -43,8 +43,17 @@ BoxBoundary<dim>::read(const Parameters &grid)
 template <int dim>
 BoxBoundary<dim>::BoxBoundary(const std::array<FaceCondition, 2 * dim> &conditions,
                               const Octree<dim>                        &octree)
-  : conditions(conditions), box(octree.box()), flags(octree.n_nodes(), 0)
+  : conditions(conditions), box(octree.box())
 {
+  reinit(octree);
+}
+
+template <int dim>
+void
+BoxBoundary<dim>::reinit(const Octree<dim> &octree)
+{
+  flags.assign(octree.n_nodes(), 0);
+  nodes.clear();
   const double tolerance = 1e-6 * octree.smallest_cell_size();
   for (unsigned int node = 0; node < octree.n_nodes(); ++node)
     {

@@ -184,6 +184,59 @@ move_and_locate(const Octree<dim>      &octree,
   return received;
 }
 
+namespace
+{
+// A GIMP particle that reaches into a neighbour is a stray even in its home cell, and so is any
+// on the upper face of the box, which no cell's half-open range holds.
+template <int dim>
+void
+sort_rows(const Octree<dim>      &octree,
+          const double            margin_of_shape,
+          const std::vector<int> &cell,
+          MaterialPoints<dim>    &points)
+{
+  points.sort(octree.n_owned_leaves(), cell);
+  for (const unsigned int leaf : points.occupied_cells())
+    for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
+      {
+        const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
+        if (!is_inside_leaf(octree, leaf, points.position(row), margin))
+          points.strays.push_back({row, static_cast<int>(leaf)});
+      }
+}
+} // namespace
+
+template <int dim>
+void
+redistribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
+{
+  const MPI_Comm                              comm  = octree.triangulation.get_communicator();
+  const int                                   me    = mpi::rank(comm);
+  const unsigned int                          width = points.columns.n_columns();
+  std::map<unsigned int, std::vector<double>> outgoing;
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    if (!points.is_hole(row))
+      if (const int owner = octree.owner_of(points.position(row)); owner != me)
+        {
+          auto &buffer = outgoing[owner];
+          buffer.resize(buffer.size() + width);
+          points.columns.get_row(row, buffer.data() + buffer.size() - width);
+          points.remove(row);
+        }
+  for (const auto &[rank, rows] : mpi::exchange_values(outgoing, comm))
+    for (std::size_t first = 0; first < rows.size(); first += width)
+      points.append(rows.data() + first);
+  std::vector<int> cell(points.n_rows(), 0);
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    if (!points.is_hole(row))
+      {
+        cell[row] = octree.find(points.position(row));
+        Assert(cell[row] >= 0 && cell[row] < static_cast<int>(octree.n_owned_leaves()),
+               dealii::ExcInternalError());
+      }
+  sort_rows(octree, margin_of_shape, cell, points);
+}
+
 template <int dim>
 void
 sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
@@ -199,65 +252,16 @@ sort_by_leaf(const Octree<dim> &octree, const double margin_of_shape, MaterialPo
       cell[row] = octree.find(points.position(row));
   for (const auto &stray : points.strays)
     cell[stray.row] = stray.leaf;
-  points.sort(octree.n_owned_leaves(), cell);
-
-  // A GIMP particle that reaches into a neighbour is a stray even in its home cell, and so is any
-  // on the upper face of the box, which no cell's half-open range holds.
-  for (const unsigned int leaf : points.occupied_cells())
-    for (unsigned int row = points.cell_begin()[leaf]; row < points.cell_begin()[leaf + 1]; ++row)
-      {
-        const double margin = margin_of_shape * points.column(Layout<dim>::size)[row];
-        if (!is_inside_leaf(octree, leaf, points.position(row), margin))
-          points.strays.push_back({row, static_cast<int>(leaf)});
-      }
+  sort_rows(octree, margin_of_shape, cell, points);
 }
 
-template <int dim>
-void
-distribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points)
-{
-  // Who owns a far leaf is not known here, but the boxes around what ranks own are: all who may own
-  // it get the particle, and the one that does keeps it.
-  const MPI_Comm      comm     = octree.triangulation.get_communicator();
-  const auto          boxes    = dealii::Utilities::MPI::all_gather(comm, octree.owned_region());
-  const unsigned int  width    = points.columns.n_columns();
-  const std::uint64_t n_before = mpi::sum<std::uint64_t>(points.n_particles(), comm);
-  std::map<unsigned int, std::vector<double>> to_send;
-  for (std::size_t row = 0; row < points.n_rows(); ++row)
-    for (unsigned int rank = 0; rank < boxes.size() && !points.is_hole(row); ++rank)
-      if (boxes[rank].point_inside(points.position(row), 1e-12))
-        {
-          auto &rows = to_send[rank];
-          rows.resize(rows.size() + width);
-          points.columns.get_row(row, rows.data() + rows.size() - width);
-        }
-  points.clear();
-  dealii::Point<dim> x;
-  for (const auto &[rank, rows] : mpi::exchange_values(to_send, comm))
-    for (std::size_t first = 0; first < rows.size(); first += width)
-      {
-        for (int d = 0; d < dim; ++d)
-          x[d] = rows[first + Layout<dim>::position + d];
-        const int leaf = octree.find(x);
-        if (leaf >= 0 && leaf < static_cast<int>(octree.n_owned_leaves()))
-          points.append(rows.data() + first);
-      }
-  const std::uint64_t n_after = mpi::sum<std::uint64_t>(points.n_particles(), comm);
-  if (n_after != n_before)
-    throw RunFailure("particles have no cell",
-                     std::to_string(n_before) + " particles of '" + points.name() + "', of which " +
-                       std::to_string(n_after) + " found their cells",
-                     "this is an error of the program: please report it with the case");
-  sort_by_leaf(octree, margin_of_shape, points);
-}
-
-#define INSTANTIATE(dim)                                                                      \
-  template unsigned int move_and_locate(const Octree<dim> &,                                  \
-                                        const BoxBoundary<dim> &,                             \
-                                        const double,                                         \
-                                        const double,                                         \
-                                        MaterialPoints<dim> &);                               \
-  template void         distribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
+#define INSTANTIATE(dim)                                                                        \
+  template unsigned int move_and_locate(const Octree<dim> &,                                    \
+                                        const BoxBoundary<dim> &,                               \
+                                        const double,                                           \
+                                        const double,                                           \
+                                        MaterialPoints<dim> &);                                 \
+  template void         redistribute(const Octree<dim> &, const double, MaterialPoints<dim> &); \
   template void         sort_by_leaf(const Octree<dim> &, const double, MaterialPoints<dim> &);
 
 INSTANTIATE(2)

@@ -13,15 +13,27 @@ template <int dim>
 NodalField<dim>::NodalField(const Octree<dim>      &octree,
                             const BoxBoundary<dim> &boundary,
                             const NodeSplit<dim>   *split)
-  : octree(octree)
-  , boundary(boundary)
-  , split(split)
-  , records(octree.n_nodes())
-  , motions(octree.n_nodes())
-  , impulses(octree.n_nodes())
-  , shifts(octree.n_nodes())
-  , shifted(octree.n_nodes(), 0)
-{}
+  : octree(octree), boundary(boundary), split(split)
+{
+  reinit();
+}
+
+template <int dim>
+void
+NodalField<dim>::reinit()
+{
+  const auto clear = [this](NodeRecords &r) {
+    r.resize(octree.n_nodes());
+    std::fill(r.begin(), r.end(), NodeRecord());
+  };
+  clear(records);
+  clear(motions);
+  clear(impulses);
+  shifts.assign(octree.n_nodes(), dealii::Tensor<1, dim>());
+  shifted.assign(octree.n_nodes(), 0);
+  shifted_nodes.clear();
+  touched.clear();
+}
 
 template <int dim>
 void

@@ -20,6 +20,16 @@ struct Wanted
 
 template <int dim>
 void
+NodeSplit<dim>::reinit()
+{
+  first.clear();
+  extras.clear();
+  owners.clear();
+  users.clear();
+}
+
+template <int dim>
+void
 NodeSplit<dim>::clear()
 {
   for (const Extra &extra : extras)

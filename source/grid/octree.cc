@@ -11,6 +11,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/grid/octree.h>
 
+#include <fstream>
 #include <map>
 
 namespace coracle
@@ -34,10 +35,18 @@ Octree<dim>::Octree(const OctreeDescription<dim> &description,
     load(saved);
   if (weight && saved.empty())
     partition(weight);
+  number();
+}
+
+template <int dim>
+void
+Octree<dim>::number()
+{
   dof_handler.distribute_dofs(fe);
   dealii::DoFRenumbering::hierarchical(dof_handler);
   enumerate();
   make_hanging_nodes();
+  find_first_places();
 }
 
 template <int dim>
@@ -75,18 +84,12 @@ Octree<dim>::refine()
       for (const auto &cell : triangulation.active_cell_iterators())
         if (cell->is_locally_owned())
           for (const auto &refinement : description.refinements)
-            {
-              // A cell that only touches the region from outside stays as it is.
-              dealii::BoundingBox<dim> region = refinement.box;
-              region.extend(-1e-6 * cell->extent_in_direction(0));
-              if (cell->level() < static_cast<int>(base_level + refinement.level) &&
-                  cell->bounding_box().get_neighbor_type(region) !=
-                    dealii::NeighborType::not_neighbors)
-                {
-                  cell->set_refine_flag();
-                  changed = true;
-                }
-            }
+            if (cell->level() < static_cast<int>(base_level + refinement.level) &&
+                refinement.meets(cell->vertex(0), cell->extent_in_direction(0)))
+              {
+                cell->set_refine_flag();
+                changed = true;
+              }
       changed = dealii::Utilities::MPI::logical_or(changed, triangulation.get_communicator());
       if (changed)
         triangulation.execute_coarsening_and_refinement();
@@ -99,10 +102,17 @@ template <int dim>
 void
 Octree<dim>::load(const std::string &file)
 {
-  using p4est = dealii::internal::p4est::functions<dim>;
+  using p4est         = dealii::internal::p4est::functions<dim>;
+  const MPI_Comm comm = triangulation.get_communicator();
+  std::ifstream  info(file + ".info");
+  std::string    titles;
+  unsigned int   version = 0, n_saved = 0;
+  std::getline(info, titles);
+  info >> version >> n_saved;
   typename dealii::internal::p4est::types<dim>::connectivity *connectivity = nullptr;
-  auto *const                                                 forest       = p4est::load_ext(
-    file.c_str(), triangulation.get_communicator(), 0, 0, 0, 0, nullptr, &connectivity);
+
+  auto *const forest = p4est::load_ext(
+    file.c_str(), comm, 0, 0, n_saved != mpi::n_ranks(comm), 0, nullptr, &connectivity);
   triangulation.load(forest);
   p4est::destroy(forest);
   p4est::connectivity_destroy(connectivity);
@@ -145,12 +155,12 @@ void
 Octree<dim>::enumerate()
 {
   // Order of the space-filling curve: coarse cell, then child by child.
-  using Cell = typename dealii::DoFHandler<dim>::active_cell_iterator;
-  std::vector<Cell> cells;
+  using NumberedCell = typename dealii::DoFHandler<dim>::active_cell_iterator;
+  std::vector<NumberedCell> cells;
   for (const auto &cell : dof_handler.active_cell_iterators())
     if (!cell->is_artificial())
       cells.push_back(cell);
-  const auto curve = [](const Cell &a, const Cell &b) {
+  const auto curve = [](const NumberedCell &a, const NumberedCell &b) {
     if (a->is_locally_owned() != b->is_locally_owned())
       return a->is_locally_owned();
     return a->id() < b->id();
@@ -168,9 +178,15 @@ Octree<dim>::enumerate()
   const double coarse_size = std::ldexp(description.cell_size, base_level);
   tree.reinit(corners.first, corners.second, n);
 
+  n_owned = 0;
+  leaf_nodes.clear();
+  leaf_lower.clear();
+  leaf_size.clear();
+  leaf_owner.clear();
+  leaf_level.clear();
   leaf_of_active_cell.assign(triangulation.n_active_cells(), -1);
   std::vector<dealii::types::global_dof_index> dofs(n_corners);
-  for (const Cell &cell : cells)
+  for (const NumberedCell &cell : cells)
     {
       const unsigned int leaf = leaf_nodes.size();
       n_owned += cell->is_locally_owned();
@@ -184,6 +200,7 @@ Octree<dim>::enumerate()
       leaf_lower.push_back(cell->vertex(0));
       leaf_size.push_back(std::ldexp(coarse_size, -cell->level()));
       leaf_owner.push_back(cell->subdomain_id());
+      leaf_level.push_back(cell->level() - base_level);
       leaf_of_active_cell[cell->active_cell_index()] = leaf;
       tree.insert(cell->center(), cell->level(), leaf);
     }
@@ -283,6 +300,7 @@ Octree<dim>::make_hanging_nodes()
       add_ghosts(far);
       parents.insert(parents.end(), far.begin(), far.end());
     }
+  hanging.clear();
   node_to_hanging.assign(n_nodes(), -1);
   for (const Parent &parent : parents)
     {
@@ -333,6 +351,16 @@ Octree<dim>::smallest_cell_size() const
   for (const double size : leaf_size)
     mine = std::min(mine, size);
   return dealii::Utilities::MPI::min(mine, triangulation.get_communicator());
+}
+
+template <int dim>
+double
+Octree<dim>::largest_cell_size() const
+{
+  double mine = 0;
+  for (const double size : leaf_size)
+    mine = std::max(mine, size);
+  return dealii::Utilities::MPI::max(mine, triangulation.get_communicator());
 }
 
 template <int dim>

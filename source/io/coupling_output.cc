@@ -143,6 +143,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write(Coupling<dim> &coupling)
 {
+  files_step     = coupling.step();
   unsigned int i = 0;
   for (auto &body : coupling.points.bodies)
     write_particles(body, particles[i++], coupling.time());
@@ -378,8 +379,12 @@ CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
       report.particles_created += mpi::sum(body.points.ledger.created, comm);
       report.particles_removed += mpi::sum(body.points.ledger.removed, comm);
       report.particles_converted += mpi::sum(body.points.ledger.converted, comm);
+      report.particles_split += mpi::sum(body.points.ledger.split, comm);
+      report.particles_merged += mpi::sum(body.points.ledger.merged, comm);
     }
-  report.energies = energies(coupling);
+  report.cells     = mpi::sum<std::uint64_t>(coupling.points.octree.n_owned_leaves(), comm);
+  report.imbalance = coupling.adaptivity.imbalance(coupling.points, coupling.contacts);
+  report.energies  = energies(coupling);
   if (first_report)
     balance.start(report.energies);
   first_report                = false;
@@ -393,6 +398,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &coupling)
 {
+  row_step = coupling.step();
   statistics.begin_row();
   set_standard_columns(statistics, report);
   auto summary = report.bodies.end() - coupling.points.bodies.size();
@@ -457,6 +463,8 @@ CouplingOutput<dim>::serialize(Archive &archive)
   archive.same("reported_force", reported_force);
   archive.same("reported_time", reported_time);
   archive.same("first_report", first_report);
+  archive.same("files_step", files_step);
+  archive.same("row_step", row_step);
 }
 
 template class CouplingOutput<2>;

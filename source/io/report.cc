@@ -42,8 +42,15 @@ add_standard_columns(Statistics &statistics, const std::vector<std::string> &bod
   statistics.add_column("worst_gap", "m");
   statistics.add_column("contact_steps", "");
   statistics.add_column("unconverged_contact_steps", "");
-  for (const char *const name :
-       {"particles", "particles.created", "particles.removed", "particles.converted"})
+  for (const char *const name : {"particles",
+                                 "particles.created",
+                                 "particles.removed",
+                                 "particles.converted",
+                                 "particles.split",
+                                 "particles.merged",
+                                 "particle_steps",
+                                 "cells",
+                                 "imbalance"})
     statistics.add_column(name, "");
   for (const char *const name : {"kinetic",
                                  "internal",
@@ -83,6 +90,11 @@ set_standard_columns(Statistics &statistics, const Report<dim> &report)
   statistics.set("particles.created", report.particles_created);
   statistics.set("particles.removed", report.particles_removed);
   statistics.set("particles.converted", report.particles_converted);
+  statistics.set("particles.split", report.particles_split);
+  statistics.set("particles.merged", report.particles_merged);
+  statistics.set("particle_steps", report.particle_steps);
+  statistics.set("cells", report.cells);
+  statistics.set("imbalance", report.imbalance);
 
   const EnergyBooks &e = report.energies;
   statistics.set("energy.kinetic", e.kinetic);

@@ -94,14 +94,15 @@ RunControl::ask(const double time, const std::uint64_t step)
   MPI_Allreduce(MPI_IN_PLACE, &reasons, 1, MPI_INT, MPI_BOR, comm);
 
   Orders orders;
-  orders.reason     = reasons & interrupted       ? "SIGINT"
-                      : reasons & terminated      ? "SIGTERM"
-                      : reasons & found_stop_file ? "the stop file"
-                      : reasons & out_of_time     ? "Checkpoint/Wall time limit"
-                                                  : "";
-  orders.stop       = !orders.reason.empty();
-  const bool due    = settings.interval.due(time, step) && step > 0;
-  orders.checkpoint = orders.stop || due || (reasons & (asked_for_checkpoint | wall_interval_over));
+  orders.reason = reasons & interrupted       ? "SIGINT"
+                  : reasons & terminated      ? "SIGTERM"
+                  : reasons & found_stop_file ? "the stop file"
+                  : reasons & out_of_time     ? "Checkpoint/Wall time limit"
+                                              : "";
+  orders.stop   = !orders.reason.empty();
+  // Nobody needs the start of a case saved if he does not ask for it.
+  const bool due    = settings.interval.due(time, step) || (reasons & wall_interval_over);
+  orders.checkpoint = orders.stop || (due && step > 0) || (reasons & asked_for_checkpoint);
   return orders;
 }
 

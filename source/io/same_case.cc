@@ -76,7 +76,7 @@ check_same_case(const Parameters &now, const Parameters &then)
     return changed;
   std::string found;
   for (const std::string &line : forbidden)
-    found += (found.empty() ? "" : "\n            ") + line;
+    found += (found.empty() ? "" : "\n") + line;
   throw UserError("this is not the case that is to be continued",
                   where,
                   found,

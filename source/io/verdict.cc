@@ -123,7 +123,9 @@ judge(const Report<dim> &report, const VerdictLimits &limits)
   if (report.ledger_error() != 0)
     blame(Outcome::failed,
           "the particle ledger is not closed: " + std::to_string(report.particles_created) +
-            " created, " + std::to_string(report.particles_removed) + " removed, " +
+            " created, " + std::to_string(report.particles_split) + " by splitting, " +
+            std::to_string(report.particles_merged) + " merged away, " +
+            std::to_string(report.particles_removed) + " removed, " +
             std::to_string(report.particles_converted) + " converted, but " +
             std::to_string(report.particles) + " present");
   if (!is_finite(report))

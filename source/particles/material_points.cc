@@ -95,6 +95,8 @@ MaterialPoints<dim>::serialize(Archive &archive)
   archive.share("created", ledger.created);
   archive.share("removed", ledger.removed);
   archive.share("converted", ledger.converted);
+  archive.share("split", ledger.split);
+  archive.share("merged", ledger.merged);
   if (archive.is_exact())
     return;
   begins.assign(1, 0);

@@ -114,9 +114,13 @@ result = test.run(CASE, WRITES, 1, (), 0, blocked)
 test.check("a folder that can't be made: named, and the run goes on",
            "a checkpoint could not be written" in result.text and "Not a directory" in result.text
            and statistics(blocked) == statistics(clock.directory))
-full = test.new_directory(CASE)
-result = test.run(CASE, WRITES, 1, (), 0, full, restore_signals=False,
-                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60000, 60000)))
+# MPI itself writes files of some megabytes.
+full, limit = test.new_directory(CASE), 16000000
+result = test.run("water_entry/water_entry.prm",
+                  {"End time": "0.2 ms", "Bodies/water/Particle spacing": "3 mm",
+                   "Bodies/wedge/Mesh/Position": "1, 1.003", "Checkpoint/Interval in steps": 3},
+                  1, (), 0, full, restore_signals=False,
+                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
 test.check("a full disk: named, the run goes on, nothing is left",
            "a checkpoint could not be written" in result.text and "File too large" in result.text
            and names(full) == [])

@@ -87,7 +87,7 @@ find_back(const Scene<dim> &scene, const double margin, MaterialPoints<dim> &poi
   for (const auto &[rank, rows] : mpi::exchange_values(to_send, comm))
     for (std::size_t first = 0; first < rows.size(); first += width)
       points.append(rows.data() + first);
-  distribute(scene.octree, margin, points);
+  redistribute(scene.octree, margin, points);
   return is_consistent(scene, margin, points) && ledger_closes(points);
 }
 

@@ -4,6 +4,7 @@
 #include <coracle/contact/contact_system.h>
 #include <coracle/contact/initial_overlaps.h>
 #include <coracle/coupling/grid_contact.h>
+#include <coracle/coupling/leaf_contacts.h>
 #include <coracle/coupling/structure_points.h>
 
 namespace coracle
@@ -33,6 +34,17 @@ public:
   void resolve_in_time(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
   /// Independent check of all particles near the surface over the step just moved. Collective.
   void audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
+
+  /// The octree has new leaves and nodes. Collective.
+  void octree_changed(const MaterialPointSystem<dim> &points);
+
+  /// What contact did in the leaves of this rank since the octree changed or this was last
+  /// forgotten.
+  const LeafContacts &leaf_contacts() const { return in_leaves; }
+  void                forget_leaf_contacts(const MaterialPointSystem<dim> &points)
+  {
+    in_leaves.reinit(points.octree.n_owned_leaves());
+  }
 
   /// Contacts of particles with facets, or pairs of bodies at nodes.
   const contact::ContactReport &report() const
@@ -102,6 +114,7 @@ private:
   std::vector<std::vector<std::uint64_t>> ids;
   std::vector<std::vector<double>>        radii;
   std::vector<dealii::Tensor<1, dim>>     impulse, correction, received;
+  LeafContacts                            in_leaves;
   std::uint64_t                           penetrations = 0;
 };
 } // namespace coracle

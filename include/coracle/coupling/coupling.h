@@ -2,7 +2,7 @@
 #pragma once
 
 #include <coracle/base/timer.h>
-#include <coracle/coupling/contact_coupling.h>
+#include <coracle/coupling/adaptivity.h>
 
 namespace coracle
 {
@@ -49,6 +49,7 @@ public:
   StructureSystem<dim>       structure;
   MaterialPointSystem<dim>   points;
   ContactCoupling<dim>       contacts;
+  Adaptivity<dim>            adaptivity;
   TimingTable                timed;
   /// At the start.
   typename ContactCoupling<dim>::Projected projected;
@@ -59,6 +60,7 @@ public:
   double worst_gap = 0;
 
 private:
+  void share_out();
   /// A step far below the first one is a RunFailure that says what asks for it.
   void check_time_step(const double dt);
   /// What went wrong on any rank, and the particle ledger: the same exception on all ranks.

@@ -31,6 +31,9 @@ public:
               std::list<MaterialPointBody<dim>> &bodies,
               NodeSplit<dim>                    &split);
 
+  /// All is looked for anew at the next update. Collective.
+  void octree_changed();
+
   std::size_t memory_consumption() const;
 
 private:
@@ -57,7 +60,7 @@ private:
 
   const Octree<dim> &octree;
   MPI_Comm           comm;
-  const double       smallest_cell;
+  double             smallest_cell;
 
   /// This rank's facets of sheets; which nodes of the published surface theirs are.
   contact::Surface<dim>           sheets;

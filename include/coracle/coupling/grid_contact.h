@@ -51,6 +51,9 @@ public:
   /// Does any pair of bodies meet on the grid?
   bool is_used() const { return !pairs.empty(); }
 
+  /// The octree has new leaves and nodes. Collective.
+  void octree_changed();
+
   /// Impulses of a step, given to both sides. Collective.
   void solve(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
 
@@ -67,6 +70,7 @@ private:
     double       friction;
   };
 
+  void make_participants(const unsigned int n_fields);
   void read_fields(MaterialPointSystem<dim> &points);
   /// Nodes where both of any pair have mass; false if there are none on any rank. Collective.
   bool mark_nodes();
@@ -93,7 +97,7 @@ private:
 
   const Octree<dim>                    &octree;
   MPI_Comm                              comm;
-  const double                          cell_size;
+  double                                cell_size = 0;
   std::unique_ptr<StructureOnGrid<dim>> structures;
   std::vector<Pair>                     pairs;
   /// Velocity fields and bodies of the structure.

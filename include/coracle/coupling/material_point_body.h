@@ -37,12 +37,15 @@ public:
                     const int              n_sheets,
                     const bool             with_particles = true);
 
-  /// Between steps. Particles saved by other ranks must be handed out then, see distribute().
+  /// Between steps. Particles saved by other ranks must be handed out then, see redistribute().
   void serialize(Archive &archive);
 
   const std::string &name() const { return points.name(); }
   /// 0, or the part of its size that a particle reaches out from its centre.
   double margin_of_shape() const { return transfer.shape == ParticleShape::gimp ? 0.5 : 0.; }
+
+  /// Bounds on the next step in these cells, where there was no stress update since they are there.
+  void find_rates(const Octree<dim> &octree);
 
   /// Velocities times exp(-c dt) while damping is on [J lost].
   double damp(const double time, const double dt);
@@ -58,6 +61,8 @@ public:
   unsigned int field = 0;
   /// Contact radius over particle size [1].
   double radius_factor;
+  /// Particles along an edge of a cell that adaptivity keeps up [1].
+  double particles_across;
   /// Acceleration [m/s^2] besides gravity, or none.
   std::unique_ptr<dealii::Function<dim>> body_force;
   /// Of the last stress update, on this rank.
@@ -66,11 +71,8 @@ public:
   double internal_energy = 0;
 
 private:
-  void generate(const Parameters &body, const Octree<dim> &octree);
-  void set_initial_pressure(const Parameters &body);
-  /// Bounds on the first step.
-  void find_rates(const Octree<dim> &octree);
-
+  void        generate(const Parameters &body, const Octree<dim> &octree);
+  void        set_initial_pressure(const Parameters &body);
   static void declare_method(Declaration &body);
 
   double damping_rate, damping_end;

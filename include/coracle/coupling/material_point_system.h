@@ -53,6 +53,16 @@ public:
   /// Positions are taken; strays, migration, open faces; sorting when due. Collective.
   void locate(const double time);
 
+  /// All particles are sorted now, whether that is due or not.
+  void sort();
+  /// The octree has new leaves and nodes: what is kept by their numbers starts afresh, particles go
+  /// to their new owners. Between steps; collective.
+  void octree_changed();
+  /// Particles have come and gone: they go to their owners and are sorted. Collective.
+  void redistribute_particles();
+  /// Kinetic energy that splitting and merging took becomes internal [J].
+  void book_split_merge(MaterialPointBody<dim> &body, const double lost);
+
   /// The first thing that went wrong on this rank in gather, update_stresses or locate. They go on
   /// to their end, because other ranks wait for this one; the step looks here afterwards.
   std::optional<RunFailure> failure;
@@ -61,7 +71,7 @@ public:
   bool take_renumbered();
 
   std::uint64_t n_particles() const;
-  /// created - removed - converted - present, over all ranks. Collective.
+  /// What the ledger expects less what is present, over all ranks. Collective.
   std::int64_t ledger_error() const;
   std::size_t  memory_consumption() const;
 
@@ -94,7 +104,6 @@ private:
                                  const double            time,
                                  const double            dt);
   void add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
-  void sort_when_due();
 
   FieldSplit<dim> sides;
   Books           energy;

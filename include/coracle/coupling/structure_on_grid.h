@@ -24,6 +24,8 @@ public:
 
   StructureOnGrid(StructureSystem<dim> &structure, const Octree<dim> &octree, MPI_Comm comm);
 
+  void octree_changed();
+
   unsigned int n_bodies() const { return node_mass.size(); }
   /// Of the body's surface [1], [m].
   double friction(const unsigned int body) const { return frictions[body]; }

@@ -33,6 +33,9 @@ public:
   BoxBoundary(const std::array<FaceCondition, 2 * dim> &conditions, const Octree<dim> &octree);
   static std::array<FaceCondition, 2 * dim> read(const Parameters &grid_section);
 
+  /// The octree has new nodes.
+  void reinit(const Octree<dim> &octree);
+
   /// Face 2 d is the lower one in direction d, 2 d + 1 the upper one.
   FaceCondition condition(const unsigned int face) const { return conditions[face]; }
   unsigned char fixed(const unsigned int node) const { return flags[node]; }

@@ -67,6 +67,30 @@ public:
     return entry;
   }
 
+  /// The coarse cell (x fastest) and the place within it, bits of all directions interleaved, x
+  /// lowest, cut off after n_bits of each; false outside the box.
+  bool curve_place(const dealii::Point<dim> &point,
+                   const unsigned int        n_bits,
+                   std::size_t              &coarse_cell,
+                   std::uint64_t            &place) const
+  {
+    std::array<std::uint64_t, dim> c{};
+    if (!integer_coordinates(point, c))
+      return false;
+    coarse_cell = coarse_slot(c);
+    place       = 0;
+    for (unsigned int l = 0; l < n_bits; ++l)
+      place = (place << dim) | child(c, l);
+    return true;
+  }
+  std::size_t n_coarse_cells() const
+  {
+    std::size_t result = 1;
+    for (const unsigned int k : n)
+      result *= k;
+    return result;
+  }
+
 private:
   static constexpr int unknown = -1;
 

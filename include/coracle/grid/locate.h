@@ -26,12 +26,12 @@ unsigned int move_and_locate(const Octree<dim>      &octree,
                              MaterialPoints<dim>    &points);
 
 /**
- * Particles that are on any rank, in no order, go to the rank of their leaf and are sorted there;
- * holes are dropped. Collective; throws RunFailure on all ranks if one of them belongs nowhere.
+ * After the octree has changed: every particle goes to the rank whose leaf it is in, whichever that
+ * is now, and all are sorted. Collective.
  */
 template <int dim>
 void
-distribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points);
+redistribute(const Octree<dim> &octree, const double margin_of_shape, MaterialPoints<dim> &points);
 
 /// Sort the particles by their leaf. All of them must be on this rank's leaves.
 template <int dim>

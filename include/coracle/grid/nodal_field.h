@@ -42,6 +42,9 @@ public:
              const BoxBoundary<dim> &boundary,
              const NodeSplit<dim>   *split = nullptr);
 
+  /// The octree has new nodes: all is zero. Between steps.
+  void reinit();
+
   NodeRecords       &gathered() { return records; }
   const NodeRecords &motion() const { return motions; }
 

@@ -26,6 +26,9 @@ class NodeSplit
 public:
   explicit NodeSplit(const Octree<dim> &octree) : octree(octree) {}
 
+  /// The octree has new nodes.
+  void reinit();
+
   /// Forget all extra records.
   void clear();
 

@@ -26,6 +26,16 @@ struct RefinementBox
 {
   dealii::BoundingBox<dim> box;
   unsigned int             level;
+
+  /// Does it reach into a cell? One that only touches it from outside stays as it is.
+  bool meets(const dealii::Point<dim> &lower, const double size) const
+  {
+    bool result = true;
+    for (unsigned int d = 0; d < dim; ++d)
+      result = result && box.lower_bound(d) + 1e-6 * size < lower[d] + size &&
+               box.upper_bound(d) - 1e-6 * size > lower[d];
+    return result;
+  }
 };
 
 /// What the octree is made from.
@@ -43,7 +53,9 @@ struct OctreeDescription
 
 /**
  * The background grid: a box of square or cubic cells, refined locally, 2:1
- * balanced, shared out among the ranks by p4est.
+ * balanced, shared out among the ranks by p4est. It may be refined, coarsened and shared out anew
+ * at any time (adapt, repartition); then all leaves and nodes have new numbers, and whoever keeps
+ * something by these numbers starts afresh.
  *
  * Cells known to this rank are *leaves*: first the locally owned ones along
  * the space-filling curve, then the ghosts. Their corners are *nodes* with
@@ -83,6 +95,33 @@ public:
   void          save(const std::string &file) const;
   std::uint64_t saved_size() const;
 
+  /**
+   * Refine and coarsen by one level at most, and share out anew. Neighbours, also through edges and
+   * corners, end up to differ by one level at most: a leaf that asks for refinement has its way,
+   * one that asks for coarsening waits for its siblings and neighbours. The result is the same on
+   * any number of ranks. Collective.
+   *
+   * @param wanted level of each owned leaf (bisections of the base cell); the regions of the
+   *        description stay at least as fine as they say
+   * @param work   of each owned leaf, >= 0, besides one for the leaf itself; decides the partition
+   * @return true if there are new leaves; then all numbers are new
+   */
+  bool adapt(std::vector<int> wanted, const std::vector<double> &work);
+
+  /// Share out anew; all numbers are new. Collective.
+  void repartition(const std::vector<double> &work);
+
+  /// Bisections of the base cell.
+  int level(const unsigned int leaf) const { return leaf_level[leaf]; }
+  /// The level that the description asks for.
+  int least_level(const unsigned int leaf) const;
+
+  /// Rank whose leaf contains the point, for any point of the box and on every rank; -1 outside.
+  int owner_of(const dealii::Point<dim> &point) const;
+
+  /// Ghost leaves get what their owners have: one value for each of n_leaves(). Collective.
+  void update_ghost_leaves(std::vector<double> &values) const;
+
   unsigned int n_owned_leaves() const { return n_owned; }
   unsigned int n_leaves() const { return leaf_nodes.size(); }
   unsigned int n_owned_nodes() const { return exchange.n_owned(); }
@@ -116,6 +155,7 @@ public:
   /// Box around this rank's leaves; empty box at the lower corner if it has none.
   dealii::BoundingBox<dim> owned_region() const;
   double                   smallest_cell_size() const;
+  double                   largest_cell_size() const;
 
   NodeExchange                                      exchange;
   dealii::parallel::distributed::Triangulation<dim> triangulation;
@@ -130,7 +170,10 @@ private:
   void refine();
   void load(const std::string &file);
   void partition(const std::function<double(const dealii::Point<dim> &, const double)> &weight);
+  /// All numbers anew.
+  void number();
   void enumerate();
+  void find_first_places();
   void make_hanging_nodes();
 
   /// One parent of a hanging node.
@@ -140,6 +183,20 @@ private:
     double                          weight;
     std::array<double, dim>         place;
   };
+  using Cell   = typename dealii::parallel::distributed::Triangulation<dim>::cell_iterator;
+  using Status = typename dealii::parallel::distributed::Triangulation<dim>::CellStatus;
+
+  /// Calls action(cell, leaf) for the cells of all leaves.
+  template <typename Action>
+  void for_each_cell(const Action &action) const;
+  /// Work of what a cell becomes, in thousandths; before the change.
+  unsigned int
+  work_of(const Cell &cell, const Status status, const std::vector<double> &work) const;
+  /// Levels that can be had with 2:1 balance, for all leaves. Collective.
+  std::vector<double> close(const std::vector<int> &wanted) const;
+  /// The owned leaves of the same parent as an owned one, or nothing if not all are leaves.
+  std::vector<std::vector<unsigned int>> find_families() const;
+
   std::vector<Parent> find_parents() const;
   std::vector<Parent> find_far_parents(const std::vector<Parent> &known) const;
   void                add_ghosts(const std::vector<Parent> &parents);
@@ -153,9 +210,12 @@ private:
   std::vector<std::array<unsigned int, n_corners>> leaf_nodes;
   std::vector<dealii::Point<dim>>                  leaf_lower;
   std::vector<double>                              leaf_size;
-  std::vector<int>                                 leaf_owner;
-  std::vector<dealii::Point<dim>>                  positions;
-  std::vector<HangingNode>                         hanging;
-  std::vector<int>                                 node_to_hanging;
+  std::vector<int>                                 leaf_owner, leaf_level;
+  /// Place along p4est's curve: of each coarse cell of the tree, and where each rank begins.
+  std::vector<std::uint64_t>                           curve_of_coarse_cell;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> first_places;
+  std::vector<dealii::Point<dim>>                      positions;
+  std::vector<HangingNode>                             hanging;
+  std::vector<int>                                     node_to_hanging;
 };
 } // namespace coracle

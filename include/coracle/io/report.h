@@ -26,14 +26,14 @@ namespace coracle
  */
 struct EnergyBooks
 {
-  double kinetic       = 0; ///< particles, elements and rigid bodies
-  double internal      = 0; ///< stress work done on particles so far
-  double strain        = 0; ///< stress work done on elements so far
-  double hourglass     = 0; ///< work against hourglass stiffness
-  double damping       = 0; ///< taken out by damping so far
-  double contact       = 0; ///< taken out by contact (impact, friction) so far
-  double transfer      = 0; ///< taken out by particle-grid transfer and particle merging so far
-  double boundary      = 0; ///< taken out at the faces of the box so far
+  double kinetic   = 0; ///< particles, elements and rigid bodies
+  double internal  = 0; ///< stress work done on particles, and what merging took of their motion
+  double strain    = 0; ///< stress work done on elements so far
+  double hourglass = 0; ///< work against hourglass stiffness
+  double damping   = 0; ///< taken out by damping so far
+  double contact   = 0; ///< taken out by contact (impact, friction) so far
+  double transfer  = 0; ///< taken out by particle-grid transfer so far
+  double boundary  = 0; ///< taken out at the faces of the box so far
   double external_work = 0; ///< gravity, loads, prescribed motion, particles that left
 
   double balance() const
@@ -94,6 +94,9 @@ struct Report
   std::uint64_t contact_steps = 0, unconverged_contact_steps = 0; ///< so far
   std::uint64_t particles         = 0;                            ///< present
   std::uint64_t particles_created = 0, particles_removed = 0, particles_converted = 0;
+  std::uint64_t particles_split = 0, particles_merged = 0; ///< more and fewer by that
+  std::uint64_t cells     = 0;                             ///< of the octree
+  double        imbalance = 1; ///< work of the busiest rank over the mean
   /// Particle-steps done so far, for the rate shown.
   double                       particle_steps = 0;
   EnergyBooks                  energies;
@@ -101,11 +104,12 @@ struct Report
   dealii::Tensor<1, dim>       momentum; ///< of everything [kg m/s]
   std::vector<BodyReport<dim>> bodies;
 
-  /// created - removed - converted - present; 0 when the ledger is closed.
+  /// created + split - removed - converted - merged - present; 0 when the ledger is closed.
   std::int64_t ledger_error() const
   {
-    return std::int64_t(particles_created) - std::int64_t(particles_removed) -
-           std::int64_t(particles_converted) - std::int64_t(particles);
+    return std::int64_t(particles_created + particles_split) - std::int64_t(particles_removed) -
+           std::int64_t(particles_converted) - std::int64_t(particles_merged) -
+           std::int64_t(particles);
   }
 };
 

@@ -15,10 +15,18 @@
 
 namespace coracle
 {
-/// created = present + removed + converted, on all ranks together, after every step.
+/// created + split = present + removed + converted + merged, on all ranks together, after every
+/// step.
 struct ParticleLedger
 {
   std::uint64_t created = 0, removed = 0, converted = 0;
+  /// Particles more by splitting, and fewer by merging.
+  std::uint64_t split = 0, merged = 0;
+
+  std::int64_t expected() const
+  {
+    return std::int64_t(created + split) - std::int64_t(removed + converted + merged);
+  }
 };
 
 /**

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/coupling/adaptivity.h>
+
+namespace coracle
+{
+namespace
+{
+/// How often it is asked how far things have moved.
+constexpr unsigned int steps_between_looks = 5;
+/// Work is shared out anew only where it is this much less even than after the last time.
+constexpr double worse = 1.1;
+
+/// Largest speed of particles and of nodes of structures, on all ranks [m/s].
+template <int dim>
+double
+largest_speed(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure)
+{
+  double square = 0;
+  for (const auto &body : points.bodies)
+    for (std::size_t row = 0; row < body.points.n_rows(); ++row)
+      {
+        double sum = 0;
+        for (int d = 0; d < dim; ++d)
+          sum += std::pow(body.points.column(ParticleLayout<dim>::velocity + d)[row], 2);
+        square = std::max(square, sum);
+      }
+  for (const auto &node : structure.publish_surface().nodes)
+    square = std::max(square, node.velocity.norm_square());
+  return mpi::max(std::sqrt(square), points.octree.triangulation.get_communicator());
+}
+} // namespace
+
+void
+AdaptivityState::serialize(Archive &archive)
+{
+  const Archive::Section part(archive, "adaptivity");
+  archive.same("next_id", next_id);
+  archive.same("steps", steps);
+  archive.same("steps_since_balance", steps_since_balance);
+  archive.same("travelled", travelled);
+  archive.same("reached_imbalance", reached_imbalance);
+}
+
+template <int dim>
+void
+Adaptivity<dim>::declare(Declaration &grid)
+{
+  Declaration &adaptivity = grid.section(
+    "Adaptivity",
+    "Cells that become finer and coarser while the run goes on, and particles that split "
+    "and merge with them; it is on if there is any criterion. Regions of "
+    "`Refinement` stay at least as fine as they say.");
+  adaptivity.integer("Interval in steps", 50, "Steps between adaptations at most.", 1);
+  adaptivity.quantity(
+    "Interval in cells",
+    "1",
+    "1",
+    "",
+    "Adapted earlier when something may have moved by so many of the smallest cells; 0: not.",
+    0.);
+  ParticleRefinement<dim>::declare(adaptivity);
+  RefinementCriteria<dim>::declare(adaptivity);
+
+  Declaration &balance =
+    grid.section("Load balance", "Sharing out of cells and their particles among the ranks.");
+  balance.quantity(
+    "Largest imbalance",
+    "1.2",
+    "1",
+    "",
+    "Work of the busiest rank over the mean, beyond which cells are shared out anew; 0: never.",
+    0.);
+  balance.integer("Interval in steps", 100, "Steps between looks at the balance.", 1);
+  balance.quantity(
+    "Work of a contact", "20", "1", "", "Of a contact over that of a particle, in a step.", 0.);
+}
+
+template <int dim>
+Adaptivity<dim>::Adaptivity(const Parameters           &root,
+                            const StructureSystem<dim> &structure,
+                            const contact::Method       method)
+  : criteria(root, structure, method == contact::Method::surface)
+  , refinement(root.section("Grid").section("Adaptivity"))
+{
+  const Parameters section = root.section("Grid").section("Adaptivity"),
+                   load    = root.section("Grid").section("Load balance");
+  interval                 = section.integer("Interval in steps");
+  interval_in_cells        = section.quantity("Interval in cells");
+  balance_interval         = load.integer("Interval in steps");
+  largest_imbalance        = load.quantity("Largest imbalance");
+  contact_weight           = load.quantity("Work of a contact");
+}
+
+template <int dim>
+std::vector<double>
+Adaptivity<dim>::work(const MaterialPointSystem<dim> &points,
+                      const ContactCoupling<dim>     &contacts) const
+{
+  const auto         &octree = points.octree;
+  std::vector<double> result(octree.n_owned_leaves());
+  for (const auto &body : points.bodies)
+    for (const unsigned int leaf : body.points.occupied_cells())
+      result[leaf] += body.points.cell_begin()[leaf + 1] - body.points.cell_begin()[leaf];
+  for (unsigned int leaf = 0; leaf < result.size(); ++leaf)
+    result[leaf] += contact_weight * contacts.leaf_contacts().number(leaf);
+  return result;
+}
+
+template <int dim>
+double
+Adaptivity<dim>::imbalance(const MaterialPointSystem<dim> &points,
+                           const ContactCoupling<dim>     &contacts) const
+{
+  const MPI_Comm comm = points.octree.triangulation.get_communicator();
+  double         mine = points.octree.n_owned_leaves() + points.n_particles();
+  for (unsigned int leaf = 0; leaf < points.octree.n_owned_leaves(); ++leaf)
+    mine += contact_weight * contacts.leaf_contacts().number(leaf);
+  return mpi::max(mine, comm) * mpi::n_ranks(comm) / std::max(mpi::sum(mine, comm), 1.);
+}
+
+template <int dim>
+void
+Adaptivity<dim>::initialise(MaterialPointSystem<dim> &points,
+                            StructureSystem<dim>     &structure,
+                            ContactCoupling<dim>     &contacts)
+{
+  const MPI_Comm comm = points.octree.triangulation.get_communicator();
+  for (const auto &body : points.bodies)
+    {
+      std::uint64_t next = 0;
+      for (std::size_t row = 0; row < body.points.n_rows(); ++row)
+        if (!body.points.is_hole(row))
+          next = std::max(next, body.points.id(row) + 1);
+      state.next_id.push_back(mpi::max(next, comm));
+    }
+  contacts.octree_changed(points);
+  if (!criteria.empty())
+    for (unsigned int round = 0; round <= criteria.highest_level(); ++round)
+      if (!adapt(points, structure, contacts, 0.))
+        break;
+  balance(points, contacts);
+}
+
+template <int dim>
+bool
+Adaptivity<dim>::due(const MaterialPointSystem<dim> &points,
+                     StructureSystem<dim>           &structure,
+                     const double                    dt)
+{
+  ++state.steps;
+  if (interval_in_cells > 0 && state.steps % steps_between_looks == 0)
+    {
+      state.travelled += steps_between_looks * dt * largest_speed(points, structure);
+      if (state.travelled > interval_in_cells * points.octree.smallest_cell_size())
+        return true;
+    }
+  return state.steps >= interval;
+}
+
+template <int dim>
+void
+Adaptivity<dim>::update(MaterialPointSystem<dim> &points,
+                        StructureSystem<dim>     &structure,
+                        ContactCoupling<dim>     &contacts,
+                        const double              time,
+                        const double              dt)
+{
+  if (!criteria.empty() && due(points, structure, dt))
+    {
+      adapt(points, structure, contacts, time);
+      contacts.forget_leaf_contacts(points);
+      state.steps     = 0;
+      state.travelled = 0;
+    }
+  if (++state.steps_since_balance >= balance_interval)
+    balance(points, contacts);
+}
+
+template <int dim>
+bool
+Adaptivity<dim>::adapt(MaterialPointSystem<dim> &points,
+                       StructureSystem<dim>     &structure,
+                       ContactCoupling<dim>     &contacts,
+                       const double              time)
+{
+  auto &octree = points.octree;
+  points.sort();
+  std::vector<int> wanted =
+    criteria.wanted_levels({points, structure, contacts.leaf_contacts(), time});
+  // Particles that could not split yet must fit into the cells.
+  for (const auto &body : points.bodies)
+    for (const unsigned int leaf : body.points.occupied_cells())
+      for (unsigned int row = body.points.cell_begin()[leaf];
+           row < body.points.cell_begin()[leaf + 1];
+           ++row)
+        if (body.points.column(ParticleLayout<dim>::size)[row] > 1.001 * octree.size(leaf))
+          wanted[leaf] = std::min(wanted[leaf], octree.level(leaf));
+  const bool new_leaves = octree.adapt(wanted, work(points, contacts));
+  if (new_leaves)
+    {
+      points.octree_changed();
+      contacts.octree_changed(points);
+    }
+  const bool new_particles = refinement.adapt(points, structure, state.next_id) > 0;
+  if (new_particles)
+    points.redistribute_particles();
+  if (new_leaves || new_particles)
+    balance(points, contacts);
+  return new_leaves || new_particles;
+}
+
+template <int dim>
+void
+Adaptivity<dim>::balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> &contacts)
+{
+  state.steps_since_balance = 0;
+  if (largest_imbalance == 0 || mpi::n_ranks(points.octree.triangulation.get_communicator()) == 1 ||
+      imbalance(points, contacts) <= std::max(largest_imbalance, worse * state.reached_imbalance))
+    return;
+  points.sort();
+  points.octree.repartition(work(points, contacts));
+  points.octree_changed();
+  contacts.octree_changed(points);
+  state.reached_imbalance = imbalance(points, contacts);
+}
+
+template class Adaptivity<2>;
+template class Adaptivity<3>;
+} // namespace coracle

@@ -52,8 +52,8 @@ template <int dim>
 void
 WarmStart<dim>::serialize(Archive &archive)
 {
-  // From a free slot on, so that entries of one key are met in the order in which they came; then in
-  // an order that does not depend on how large the table has grown.
+  // From a free slot on, so that entries of one key are met in the order in which they came; then
+  // in an order that does not depend on how large the table has grown.
   std::vector<Slot> entries;
   std::size_t       first = 0;
   while (first < slots.size() && slots[first].used)

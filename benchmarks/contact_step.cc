@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nanoseconds a contact and step, on one core: two layers of particles of a grid of hexahedra
-// that strike a wavy surface of n x n facets, 100 x 100 by default, four contacts a facet. Search
-// anew (global and local), local search with candidates that are kept, rows, solve, audit; and
-// nearest points alone.
+// What a contact costs, on one core, processor time.
+//   contact_step [most contacts]
+// prints the cost of each part of a step as a run goes on (contact_layer.h), for a thousand
+// contacts up to a million, and memory.
 //   contact_step --benchmark_filter=local
+// runs single parts on two layers of particles that strike a wavy surface of n x n facets, 100 x
+// 100 by default, four contacts a facet: search anew (global and local), local search with
+// candidates that are kept, rows, solve, audit; and nearest points alone.
 #include <benchmark/benchmark.h>
 
 #include <deal.II/base/mpi.h>
 
-#include <coracle/contact/contact_system.h>
+#include "contact_layer.h"
 
+#include <iomanip>
+#include <iostream>
 #include <random>
 
 namespace
@@ -258,12 +263,74 @@ BENCHMARK(solve_impact)
 BENCHMARK(solve_warm)->Unit(benchmark::kMillisecond);
 BENCHMARK(audit)->Unit(benchmark::kMillisecond);
 BENCHMARK(nearest_points)->Arg(0)->Arg(5)->Arg(30)->Arg(100)->Unit(benchmark::kMillisecond);
+/// Resident memory of this process [bytes].
+double
+memory_now()
+{
+  dealii::Utilities::System::MemoryStats stats;
+  dealii::Utilities::System::get_memory_stats(stats);
+  return 1024. * stats.VmRSS;
+}
+
+void
+print_header()
+{
+  std::cout << "Nanoseconds a contact and step; search: candidates kept / looked for anew every\n"
+               "tenth step; iterations: mean / most; bytes a contact.\n\n"
+            << std::setw(9) << "contacts" << std::setw(11) << "cand./cont." << std::setw(8)
+            << "search" << std::setw(8) << "anew" << std::setw(8) << "rows" << std::setw(8)
+            << "solve" << std::setw(8) << "check" << std::setw(8) << "audit" << std::setw(8)
+            << "all" << std::setw(8) << "iter." << std::setw(6) << "most" << std::setw(9)
+            << "unconv." << std::setw(8) << "bytes" << std::setw(9) << "through\n";
+}
+
+/// A line of the table.
+void
+contact_in_a_run(const unsigned int n_cells, const double friction, const unsigned int n_steps)
+{
+  coracle::benchmarks::ContactLayer layer({n_cells, friction});
+  const double                      before = memory_now();
+  // Until the layer lies on the plate.
+  for (unsigned int k = 0; k < (n_cells < 300 ? 30 : 20); ++k)
+    layer.step();
+  layer.reset();
+  for (unsigned int k = 0; k < n_steps; ++k)
+    layer.step();
+  const auto  &t      = layer.times;
+  const auto   each   = [](const double time, const double n) { return 1e9 * time / n; };
+  const double kept   = t.contacts - t.contacts_anew;
+  const double all    = t.search + t.search_anew + t.rows + t.solve + t.check + t.audit;
+  const auto  &report = layer.contacts.report();
+  std::cout << std::setw(9) << std::lround(t.contacts / n_steps) << std::fixed
+            << std::setprecision(1) << std::setw(11) << t.candidates / t.contacts
+            << std::setprecision(0) << std::setw(8) << each(t.search, kept) << std::setw(8)
+            << each(t.search_anew, t.contacts_anew) << std::setw(8) << each(t.rows, t.contacts)
+            << std::setw(8) << each(t.solve, t.contacts) << std::setw(8)
+            << each(t.check, t.contacts) << std::setw(8) << each(t.audit, t.contacts)
+            << std::setw(8) << each(all, t.contacts) << std::setw(8) << t.iterations / n_steps
+            << std::setw(6) << t.most_iterations << std::setw(9) << t.not_converged << std::setw(8)
+            << (memory_now() - before) * n_steps / t.contacts << std::setw(8)
+            << report.n_penetrations << std::endl;
+}
 } // namespace
 
 int
 main(int argc, char **argv)
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (argc <= 2 && (argc == 1 || argv[1][0] != '-'))
+    {
+      const double most = (argc == 2 ? std::stod(argv[1]) : 1e6);
+      for (const double friction : {0., 0.2})
+        {
+          std::cout << "\nFriction " << std::defaultfloat << friction << ". ";
+          print_header();
+          for (const unsigned int n_cells : {16, 50, 158, 500})
+            if (4. * n_cells * n_cells <= (friction == 0 ? most : std::min(most, 1e5)))
+              contact_in_a_run(n_cells, friction, n_cells < 100 ? 60 : n_cells < 300 ? 40 : 10);
+        }
+      return 0;
+    }
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
 }

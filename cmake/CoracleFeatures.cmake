@@ -33,6 +33,11 @@ function(coracle_check_features)
     coracle_missing("CLI11, which reads the command line, was not found." libcli11-dev)
   endif()
 
+  find_path(CORACLE_JSON_INCLUDE nlohmann/json.hpp)
+  if(NOT CORACLE_JSON_INCLUDE)
+    coracle_missing("nlohmann-json, which reads and writes manifests, was not found." nlohmann-json3-dev)
+  endif()
+
   if(CORACLE_TESTS)
     find_program(NUMDIFF_EXECUTABLE numdiff HINTS ${NUMDIFF_DIR} PATH_SUFFIXES bin)
     if(NOT NUMDIFF_EXECUTABLE)

@@ -58,7 +58,9 @@ set_up(CLI::App &app, Arguments &arguments)
                arguments.print,
                "Show all parameters with default, unit and meaning, as a parameter file; after "
                "case.prm: all values of this case; --print-parameters=markdown: the reference");
-  app.add_flag("--restart", arguments.restart, "Go on from the newest checkpoint");
+  app.add_flag("--restart",
+               arguments.restart,
+               "Go on from the newest checkpoint in the output folder");
 }
 
 void
@@ -102,11 +104,6 @@ parse_command_line(const int argc, const char *const *const argv)
       return result;
     }
   check_files(arguments, app.remaining());
-  if (arguments.restart)
-    throw UserError("a run cannot be continued",
-                    "command line, --restart",
-                    "this version writes no checkpoints",
-                    "run the case from its start, without --restart");
   if (arguments.print == "markdown")
     result.action = CommandLine::Action::print_markdown;
   else if (arguments.print == "prm")

@@ -17,9 +17,9 @@ constexpr unsigned int n_shown = 5;
 Log::Tee::Tee(std::streambuf *const console) : console(console) {}
 
 void
-Log::Tee::open(const std::string &file_name)
+Log::Tee::open(const std::string &file_name, const bool append)
 {
-  file.open(file_name);
+  file.open(file_name, append ? std::ios::app : std::ios::out);
   file << kept << std::flush;
   if (!file)
     throw UserError("a file cannot be written",
@@ -60,10 +60,10 @@ Log::Log(const MPI_Comm comm, std::ostream &console)
 Log::~Log() = default;
 
 void
-Log::open(const std::string &file_name)
+Log::open(const std::string &file_name, const bool append)
 {
   if (writes)
-    tee.open(file_name);
+    tee.open(file_name, append);
 }
 
 void

@@ -9,7 +9,19 @@ ParameterFile::ParameterFile(const Declaration &declaration) : data(std::make_un
   data->root = declaration.data->root;
 }
 
+ParameterFile::ParameterFile() : data(std::make_unique<Data>()) {}
+
 ParameterFile::~ParameterFile() = default;
+
+ParameterFile::ParameterFile(ParameterFile &&) = default;
+
+ParameterFile
+ParameterFile::empty_copy() const
+{
+  ParameterFile result;
+  result.data->root = data->root;
+  return result;
+}
 
 void
 ParameterFile::read(const std::string &file_name)

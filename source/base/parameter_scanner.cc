@@ -4,6 +4,7 @@
 #include <coracle/base/parameter_scanner.h>
 #include <coracle/base/units.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -14,7 +15,9 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr unsigned int deepest_include = 16;
+constexpr unsigned int deepest_include = 16, deepest_section = 32;
+/// Bytes of one file; more is no parameter file.
+constexpr std::size_t longest_file = 1 << 26;
 
 /// Blanks at the ends removed, several inside become one.
 std::string
@@ -52,9 +55,16 @@ slurp(const std::string &file_name, const std::string &where)
                     where,
                     "'" + file_name + "' is a folder, or you may not read it",
                     "give a parameter file that you may read");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  std::string            text;
+  std::array<char, 4096> part;
+  while (text.size() <= longest_file && (in.read(part.data(), part.size()) || in.gcount() > 0))
+    text.append(part.data(), in.gcount());
+  if (text.size() > longest_file)
+    throw UserError("a file is too long",
+                    where,
+                    "'" + file_name + "' has more than 64 MB",
+                    "give a parameter file");
+  return text;
 }
 
 std::vector<Line>
@@ -153,6 +163,11 @@ scan(const std::vector<Line> &lines)
         statements.push_back(scan_set(line, sections, rest));
       else if (word == "subsection" && !rest.empty() && rest.find('/') == std::string::npos)
         {
+          if (sections.size() == deepest_section)
+            throw UserError("too many subsections in each other",
+                            describe(line.location, join(sections, "/")),
+                            "more than " + std::to_string(deepest_section) + " are open",
+                            "close subsections with 'end'");
           sections.push_back(squeeze(rest));
           opened.push_back(line.location);
           statements.push_back({line.location, sections, "", ""});

@@ -187,6 +187,29 @@ Parameters::path() const
   return section_path;
 }
 
+std::vector<Parameters::Entry>
+Parameters::entries() const
+{
+  std::vector<Entry> result;
+  const std::string  below = (section_path.empty() ? "" : section_path + "/");
+  for (const auto &[path, section] : data->sections)
+    {
+      if (path != section_path && path.compare(0, below.size(), below) != 0)
+        continue;
+      if (!section.declaration->item.empty())
+        result.push_back({path, internal::join(section.section_names), {}, path});
+      for (const auto &[name, value] : section.values)
+        {
+          internal::Location location = value.location;
+          if (location.file.empty() && !value.given)
+            location.file = data->file_name;
+          const std::string entry = internal::join_path(path, name);
+          result.push_back({entry, value.text, value.numbers, internal::describe(location, entry)});
+        }
+    }
+  return result;
+}
+
 UserError
 Parameters::error(const std::string &entry,
                   const std::string &title,

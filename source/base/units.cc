@@ -86,12 +86,24 @@ lookup(const std::string &name)
   throw UnitError("'" + name + "' is not a known unit");
 }
 
+/// Beyond these a unit is a slip of the pen; they also keep numbers in bounds.
+constexpr int largest_exponent = 12, deepest_parentheses = 16;
+
+void
+check_exponents(const Unit &unit)
+{
+  for (const int e : unit.dimension)
+    if (std::abs(e) > 10 * largest_exponent)
+      throw UnitError("the exponents of a unit are too large");
+}
+
 Unit
 power(const Unit &unit, const int exponent)
 {
   Unit result{std::pow(unit.factor, exponent), unit.dimension};
   for (int &e : result.dimension)
     e *= exponent;
+  check_exponents(result);
   return result;
 }
 
@@ -101,6 +113,7 @@ product(const Unit &a, const Unit &b)
   Unit result{a.factor * b.factor, a.dimension};
   for (unsigned int i = 0; i < result.dimension.size(); ++i)
     result.dimension[i] += b.dimension[i];
+  check_exponents(result);
   return result;
 }
 
@@ -146,7 +159,10 @@ private:
     if (position < text.size() && text[position] == '(')
       {
         ++position;
+        if (++depth > deepest_parentheses)
+          throw UnitError("the unit '" + text + "' has too many parentheses");
         unit = read_product();
+        --depth;
         if (position == text.size())
           throw UnitError("the unit '" + text + "' lacks a ')'");
         ++position;
@@ -180,7 +196,7 @@ private:
     const char *const begin = text.c_str() + position;
     char             *end   = nullptr;
     const long        value = std::strtol(begin, &end, 10);
-    if (end == begin || std::abs(value) > 12)
+    if (end == begin || std::abs(value) > largest_exponent)
       throw UnitError("the unit '" + text + "' needs a whole number after '^'");
     position += end - begin;
     return value;
@@ -194,6 +210,7 @@ private:
 
   const std::string &text;
   std::size_t        position = 0;
+  int                depth    = 0;
 };
 
 struct NumberAndUnit

@@ -14,6 +14,9 @@ namespace
 constexpr double movement_margin = 1.1;
 /// Candidates reach this much farther than the present speeds ask for.
 constexpr double reach_margin = 1.25;
+/// The skin is as wide as what will be used up until points are renumbered anyway, with this
+/// margin, and at least this part of what is asked for.
+constexpr double skin_margin = 1.25, least_part_of_skin = 0.5;
 /// Boxes per point set that tell other ranks where this rank's points are.
 constexpr unsigned int n_reach_boxes = 8;
 
@@ -109,7 +112,17 @@ ContactSystem<dim>::rebuild(const Surface<dim>               &owned,
   double thickness = 0;
   for (const auto &body : owned.bodies)
     thickness = std::max(thickness, body.thickness);
-  reach = reach_margin * travel + options.skin * (extremes.radius + 0.5 * thickness);
+  // Points are renumbered at regular intervals. No steps left: at longer ones than before.
+  if (extremes.changed > 0)
+    {
+      change_interval    = (statistics.n_rebuilds > 0 ? steps_since_change : 0);
+      steps_since_change = 0;
+    }
+  const double n_steps =
+    (change_interval > steps_since_change ? double(change_interval - steps_since_change) : 1e6);
+  const double skin     = options.skin * (extremes.radius + 0.5 * thickness),
+               expected = skin_margin * movement_margin * 0.5 * travel * n_steps;
+  reach = reach_margin * travel + std::clamp(expected, least_part_of_skin * skin, skin);
   used  = 0;
 
   std::vector<Box> boxes;
@@ -155,6 +168,7 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
 {
   const Extremes extremes = measure(owned, points);
   const double   travel   = 2 * dt * (extremes.point_speed + extremes.node_speed);
+  ++steps_since_change;
   if (extremes.changed > 0 || used + extremes.movement + travel > reach)
     rebuild(owned, points, extremes, travel);
   else
@@ -369,6 +383,37 @@ ContactSystem<dim>::audit(const Surface<dim> &owned, const std::vector<PointSet<
   MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
   statistics.n_penetrations += n;
   return n;
+}
+
+template <int dim>
+void
+ContactSystem<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "contact");
+  {
+    const Archive::Section part(archive, "report");
+    statistics.serialize(archive);
+  }
+  archive.own("changed", changed);
+  archive.own("reach", reach);
+  archive.own("used", used);
+  archive.same("steps_since_change", steps_since_change);
+  archive.same("change_interval", change_interval);
+  archive.own("positions_at_search", positions_at_search);
+  {
+    const Archive::Section part(archive, "facets");
+    facets.serialize(archive);
+  }
+  {
+    const Archive::Section part(archive, "candidates");
+    search.serialize(archive);
+  }
+  solver.serialize(archive);
+  auditor.serialize(archive);
+  if (!archive.loads())
+    return;
+  local_search.reinit(facets.surface());
+  changed = changed || !archive.is_exact();
 }
 
 template class ContactSystem<2>;

@@ -3,6 +3,7 @@
 #include <coracle/contact/messages.h>
 
 #include <cmath>
+#include <limits>
 
 namespace coracle::contact
 {
@@ -41,15 +42,16 @@ Delassus<dim>::torque(const Vector &arm, const Vector &impulse)
 
 template <int dim>
 void
-Delassus<dim>::apply_rigid(const Row         &row,
-                           const unsigned int side,
-                           const Vector      &impulse,
-                           Velocities<dim>   &v) const
+Delassus<dim>::apply_rigid(const Row           &row,
+                           const unsigned int   side,
+                           const Vector        &impulse,
+                           LaneVelocities<dim> &v) const
 {
   const int b = row.rigid_body[side];
   for (int d = 0; d < dim; ++d)
     v.rigid[b][d] += sign(side) * rigid_inverse_mass[b][d] * impulse[d];
-  v.spin[b] += sign(side) * (rigid_inverse_inertia[b] * torque(row.arm[side], impulse));
+  v.spin[b] +=
+    sign(side) * (rigid_inverse_inertia[b] * torque(arms[&row - list.data()][side], impulse));
 }
 
 template <int dim>
@@ -57,18 +59,18 @@ dealii::Tensor<1, dim>
 Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split) const
 {
   Vector result;
-  for (std::size_t e = row.begin; e < row.end; ++e)
+  for (std::size_t e = row.begin; e < row.begin + row.n_entries; ++e)
     {
-      const unsigned int i = entries[e].unknown;
+      const unsigned int i = entry_unknown[e];
       const double       factor =
-        entries[e].weight * entries[e].weight / (split ? 1 : shared.multiplicity(i));
+        entry_weight[e] * entry_weight[e] / (split ? 1 : shared.multiplicity(i));
       for (int d = 0; d < dim; ++d)
         result[d] += factor * inverse_mass[i][d] * impulse[d];
     }
   for (unsigned int side = 0; side < 2; ++side)
     if (const int b = row.rigid_body[side]; b >= 0)
       {
-        const Vector &arm = row.arm[side];
+        const Vector &arm = arms[&row - list.data()][side];
         const double  n   = (split ? 1 : rigid_multiplicity[b]);
         for (int d = 0; d < dim; ++d)
           result[d] += rigid_inverse_mass[b][d] / n * impulse[d];
@@ -81,23 +83,24 @@ template <int dim>
 double
 Delassus<dim>::tangential_inverse_mass(const Row &row, const bool split) const
 {
-  Vector t1;
+  const Vector normal = to_tensor<dim>(row.normal);
+  Vector       t1;
   if constexpr (dim == 2)
     {
-      t1[0] = -row.normal[1];
-      t1[1] = row.normal[0];
+      t1[0] = -normal[1];
+      t1[1] = normal[0];
       return t1 * response(row, t1, split);
     }
   else
     {
       unsigned int smallest = 0;
       for (int d = 1; d < dim; ++d)
-        if (std::abs(row.normal[d]) < std::abs(row.normal[smallest]))
+        if (std::abs(normal[d]) < std::abs(normal[smallest]))
           smallest = d;
       t1[smallest] = 1;
-      t1 -= (t1 * row.normal) * row.normal;
+      t1 -= (t1 * normal) * normal;
       t1 /= t1.norm();
-      const Vector t2 = dealii::cross_product_3d(row.normal, t1), k1 = response(row, t1, split),
+      const Vector t2 = dealii::cross_product_3d(normal, t1), k1 = response(row, t1, split),
                    k2 = response(row, t2, split);
       const double a = t1 * k1, b = t2 * k2, c = t1 * k2;
       return 0.5 * (a + b) + std::sqrt(0.25 * (a - b) * (a - b) + c * c);
@@ -106,26 +109,47 @@ Delassus<dim>::tangential_inverse_mass(const Row &row, const bool split) const
 
 template <int dim>
 void
-Delassus<dim>::prepare(Row &row) const
+Delassus<dim>::prepare(Row &row, Sliding &slide, TrueMasses &masses) const
 {
-  row.normal_response     = response(row, row.normal);
-  row.normal_inverse_mass = row.normal * row.normal_response;
-  row.true_inverse_mass   = row.normal * response(row, row.normal, false);
-  if (row.friction > 0)
+  const Vector normal          = to_tensor<dim>(row.normal);
+  const Vector normal_response = response(row, normal);
+  row.normal_inverse_mass      = normal * normal_response;
+  masses.normal                = normal * response(row, normal, false);
+  if (slide.friction > 0)
     {
-      row.tangential_inverse_mass      = tangential_inverse_mass(row, true);
-      row.true_tangential_inverse_mass = tangential_inverse_mass(row, false);
+      slide.normal_response         = to_lanes<dim>(normal_response);
+      slide.tangential_inverse_mass = tangential_inverse_mass(row, true);
+      masses.tangential             = tangential_inverse_mass(row, false);
     }
   double largest = 0;
-  for (std::size_t e = row.begin; e < row.end; ++e)
-    largest += entries[e].weight * entries[e].weight * inverse_mass[entries[e].unknown].norm();
+  for (std::size_t e = row.begin; e < row.begin + row.n_entries; ++e)
+    largest +=
+      entry_weight[e] * entry_weight[e] * to_tensor<dim>(inverse_mass[entry_unknown[e]]).norm();
   for (const int b : row.rigid_body)
     if (b >= 0)
       largest += rigid_inverse_mass[b].norm();
-  row.fixed = !(row.normal_inverse_mass > 1e-10 * largest);
+  row.fixed       = !(row.normal_inverse_mass > 1e-10 * largest);
+  row.normal_mass = (row.fixed ? 0. : 1. / row.normal_inverse_mass);
   // Where both sides' sliding is prescribed, friction changes nothing.
-  if (row.friction > 0 && !(row.tangential_inverse_mass > 1e-10 * largest))
-    row.friction = 0;
+  if (slide.friction > 0 && !(slide.tangential_inverse_mass > 1e-10 * largest))
+    slide.friction = 0;
+  row.has_friction = (slide.friction > 0);
+}
+
+template <int dim>
+void
+Delassus<dim>::take_entries(const Rows &rows)
+{
+  Assert(rows.entries.size() < std::numeric_limits<unsigned int>::max(),
+         dealii::ExcMessage("Too many entries for one rank"));
+  entry_unknown.resize(rows.entries.size());
+  entry_weight.resize(rows.entries.size());
+  for (std::size_t side = 0; side + 1 < rows.begin.size(); ++side)
+    for (std::size_t e = rows.begin[side]; e < rows.begin[side + 1]; ++e)
+      {
+        entry_unknown[e] = rows.entries[e].unknown;
+        entry_weight[e]  = (side % 2 == 0 ? 1 : -1) * rows.entries[e].weight;
+      }
 }
 
 template <int dim>
@@ -173,42 +197,45 @@ Delassus<dim>::reinit(const std::vector<Contact<dim>>      &contacts,
   predicted.nodes.resize(unknowns.size());
   for (unsigned int i = 0; i < unknowns.size(); ++i)
     {
-      inverse_mass[i]    = double(shared.multiplicity(i)) * unknowns[i].inverse_mass;
-      predicted.nodes[i] = unknowns[i].velocity;
+      inverse_mass[i]    = double(shared.multiplicity(i)) * to_lanes<dim>(unknowns[i].inverse_mass);
+      predicted.nodes[i] = to_lanes<dim>(unknowns[i].velocity);
     }
 
-  entries = rows.entries;
+  take_entries(rows);
   list.resize(contacts.size());
+  slidings.resize(contacts.size());
+  true_masses.resize(contacts.size());
+  arms.resize(rigid.empty() ? 0 : contacts.size());
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
-      for (std::size_t e = rows.begin[2 * c + 1]; e < rows.begin[2 * c + 2]; ++e)
-        entries[e].weight *= -1;
-      Row &row       = list[c];
-      row.begin      = rows.begin[2 * c];
-      row.end        = rows.begin[2 * c + 2];
-      row.rigid_body = rows.rigid_body[c];
-      row.normal     = contacts[c].normal;
-      row.friction   = contacts[c].friction;
+      Row &row             = list[c];
+      row.begin            = rows.begin[2 * c];
+      row.n_entries        = rows.begin[2 * c + 2] - row.begin;
+      row.rigid_body       = rows.rigid_body[c];
+      row.normal           = to_lanes<dim>(contacts[c].normal);
+      slidings[c].friction = contacts[c].friction;
       for (unsigned int side = 0; side < 2; ++side)
         if (const int b = row.rigid_body[side]; b >= 0)
-          row.arm[side] =
+          arms[c][side] =
             contacts[c].place + contacts[c].gap * contacts[c].normal - rigid[b].centre;
-      prepare(row);
+      prepare(row, slidings[c], true_masses[c]);
     }
 }
 
 template <int dim>
 void
-Delassus<dim>::set_zero(Velocities<dim> &v) const
+Delassus<dim>::set_zero(LaneVelocities<dim> &v) const
 {
-  v.nodes.assign(predicted.nodes.size(), Vector());
+  v.nodes.assign(predicted.nodes.size(), Lanes<dim>{});
   v.rigid.assign(predicted.rigid.size(), Vector());
   v.spin.assign(predicted.spin.size(), dealii::Tensor<1, 3>());
 }
 
 template <int dim>
 void
-Delassus<dim>::synchronise(Velocities<dim> &v, const Velocities<dim> &before, double &scalar)
+Delassus<dim>::synchronise(LaneVelocities<dim>       &v,
+                           const LaneVelocities<dim> &before,
+                           double                    &scalar)
 {
   if (n_ranks(communicator) == 1)
     return;

@@ -220,6 +220,73 @@ FacetExchange<dim>::add_to_owners(const std::vector<dealii::Tensor<1, dim>> &val
         owned[in.index[i]][d] += in.buffer[dim * i + d];
 }
 
+template <int dim>
+void
+FacetExchange<dim>::serialize(Archive &archive, std::vector<Partner> &partners)
+{
+  std::vector<int>                       ranks;
+  std::vector<std::vector<unsigned int>> index;
+  std::vector<std::vector<char>>         returns;
+  for (const auto &partner : partners)
+    {
+      ranks.push_back(partner.rank);
+      index.push_back(partner.index);
+      returns.push_back(partner.returns);
+    }
+  archive.own("rank", ranks);
+  archive.own("index", index);
+  archive.own("returns", returns);
+  partners.clear();
+  for (unsigned int i = 0; i < ranks.size(); ++i)
+    partners.push_back({ranks[i], index[i], {}, returns[i]});
+}
+
+template <int dim>
+void
+FacetExchange<dim>::serialize(Archive &archive)
+{
+  // Bodies, and where nodes are, come with the next update().
+  std::vector<std::uint64_t> keys, facets;
+  std::vector<int>           owners;
+  for (const auto &node : local.nodes)
+    {
+      keys.push_back(node.key);
+      owners.push_back(node.owner);
+    }
+  for (const auto &facet : local.facets)
+    {
+      facets.insert(facets.end(), facet.nodes.begin(), facet.nodes.end());
+      facets.push_back(facet.body);
+      facets.push_back(facet.key);
+    }
+  archive.own("node_keys", keys);
+  archive.own("node_owners", owners);
+  archive.own("facets", facets);
+  archive.own("local_nodes", local_nodes);
+  local.nodes.resize(keys.size());
+  for (unsigned int i = 0; i < keys.size(); ++i)
+    {
+      local.nodes[i].key   = keys[i];
+      local.nodes[i].owner = owners[i];
+    }
+  constexpr unsigned int n_vertices = vertices_per_facet<dim>;
+  local.facets.resize(facets.size() / (n_vertices + 2));
+  auto value = facets.begin();
+  for (auto &facet : local.facets)
+    {
+      std::copy_n(value, n_vertices, facet.nodes.begin());
+      facet.body = value[n_vertices];
+      facet.key  = value[n_vertices + 1];
+      value += n_vertices + 2;
+    }
+  {
+    const Archive::Section section(archive, "sent");
+    serialize(archive, sent);
+  }
+  const Archive::Section section(archive, "received");
+  serialize(archive, received);
+}
+
 template class FacetExchange<2>;
 template class FacetExchange<3>;
 } // namespace coracle::contact

@@ -18,8 +18,7 @@ GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
                         const std::vector<double> &target,
                         const bool                 friction,
                         const bool                 back,
-                        std::vector<Vector>       &impulses,
-                        Velocities<dim>           &v) const
+                        LaneVelocities<dim>       &v)
 {
   double            largest = 0;
   const auto       &rows    = delassus.rows();
@@ -30,17 +29,18 @@ GaussSeidel<dim>::sweep(const Delassus<dim>       &delassus,
       const auto       &row = rows[c];
       if (row.fixed)
         continue;
-      const Vector u      = delassus.relative_velocity(row, v);
-      const Vector next   = next_impulse<dim>(row, impulses[c], u, target[c], friction);
-      const Vector step   = next - impulses[c];
-      const double square = step.norm_square();
+      const auto *const slide  = (friction && row.has_friction ? &delassus.sliding(c) : nullptr);
+      const Lanes<dim>  u      = delassus.relative_velocity(row, v);
+      const Lanes<dim>  next   = next_impulse<dim>(row, slide, impulses[c], u, target[c]);
+      const Lanes<dim>  step   = next - impulses[c];
+      const double      square = dot<dim>(step, step);
       if (square == 0)
         continue;
       impulses[c] = next;
       delassus.apply(row, step, v);
-      largest = std::max(largest, std::sqrt(square) * row.normal_inverse_mass);
+      largest = std::max(largest, square * row.normal_inverse_mass * row.normal_inverse_mass);
     }
-  return largest;
+  return std::sqrt(largest);
 }
 
 template <int dim>
@@ -48,19 +48,22 @@ double
 GaussSeidel<dim>::residual(const Delassus<dim>       &delassus,
                            const std::vector<double> &target,
                            const bool                 friction,
-                           const std::vector<Vector> &impulses,
-                           const Velocities<dim>     &v) const
+                           const LaneVelocities<dim> &v) const
 {
   double      result = 0;
   const auto &rows   = delassus.rows();
   for (std::size_t c = 0; c < rows.size(); ++c)
     if (!rows[c].fixed)
       {
-        const Vector u    = delassus.relative_velocity(rows[c], v);
-        const Vector next = next_impulse<dim>(rows[c], impulses[c], u, target[c], friction);
-        result = std::max(result, (next - impulses[c]).norm() * rows[c].normal_inverse_mass);
+        const auto *const slide =
+          (friction && rows[c].has_friction ? &delassus.sliding(c) : nullptr);
+        const Lanes<dim> u = delassus.relative_velocity(rows[c], v);
+        const Lanes<dim> step =
+          next_impulse<dim>(rows[c], slide, impulses[c], u, target[c]) - impulses[c];
+        const double size = rows[c].normal_inverse_mass;
+        result            = std::max(result, dot<dim>(step, step) * size * size);
       }
-  return result;
+  return std::sqrt(result);
 }
 
 template <int dim>
@@ -69,23 +72,38 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
                         const std::vector<double> &target,
                         const bool                 friction,
                         const IterationLimits     &limits,
-                        std::vector<Vector>       &impulses,
-                        Velocities<dim>           &v)
+                        std::vector<Vector>       &result,
+                        LaneVelocities<dim>       &v)
 {
   const auto &rows = delassus.rows();
+  impulses.resize(rows.size());
   // Velocities with the impulses to start from.
   before        = v;
   double unused = 0;
   for (std::size_t c = 0; c < rows.size(); ++c)
-    if (rows[c].fixed)
-      impulses[c] = Vector();
-    else if (impulses[c].norm_square() > 0)
-      delassus.apply(rows[c], impulses[c], v);
+    {
+      impulses[c] = (rows[c].fixed ? Lanes<dim>{} : to_lanes<dim>(result[c]));
+      if (dot<dim>(impulses[c], impulses[c]) > 0)
+        delassus.apply(rows[c], impulses[c], v);
+    }
   delassus.synchronise(v, before, unused);
+  const auto report = iterate(delassus, target, friction, limits, v);
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    result[c] = to_tensor<dim>(impulses[c]);
+  return report;
+}
 
+template <int dim>
+IterationReport
+GaussSeidel<dim>::iterate(Delassus<dim>             &delassus,
+                          const std::vector<double> &target,
+                          const bool                 friction,
+                          const IterationLimits     &limits,
+                          LaneVelocities<dim>       &v)
+{
   IterationReport report;
   const auto      finished = [&] {
-    report.residual = residual(delassus, target, friction, impulses, v);
+    report.residual = residual(delassus, target, friction, v);
     MPI_Allreduce(MPI_IN_PLACE, &report.residual, 1, MPI_DOUBLE, MPI_MAX, communicator);
     report.converged = (report.residual <= limits.tolerance);
     return report.converged || report.iterations >= limits.iterations;
@@ -95,9 +113,10 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
   momentum.restart(impulses, v);
   for (;;)
     {
-      before         = v;
-      double largest = sweep(delassus, target, friction, false, impulses, v);
-      largest        = std::max(largest, sweep(delassus, target, friction, true, impulses, v));
+      if (n_ranks(communicator) > 1)
+        before = v;
+      double largest = sweep(delassus, target, friction, false, v);
+      largest        = std::max(largest, sweep(delassus, target, friction, true, v));
       double turn    = (accelerate ? momentum.turn(delassus, impulses) : 0.);
       delassus.synchronise(v, before, turn);
       MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
@@ -106,7 +125,7 @@ GaussSeidel<dim>::solve(Delassus<dim>             &delassus,
       if ((largest <= limits.tolerance || report.iterations >= limits.iterations) && finished())
         return report;
       if (accelerate)
-        momentum.extrapolate(turn > 0, impulses, v);
+        momentum.advance(turn > 0, impulses, v);
     }
 }
 

@@ -15,6 +15,19 @@ constexpr double same_place = 1e-8;
 constexpr double on_surface = 1e-7;
 /// Nearer than this, in facet sizes, a point is on the surface.
 constexpr double off_surface = 1e-9;
+
+/// Of the plane that leaves the corners equally far; not of unit length.
+dealii::Tensor<1, 2>
+mean_normal(const std::array<dealii::Point<2>, 2> &x)
+{
+  return dealii::cross_product_2d(x[1] - x[0]);
+}
+
+dealii::Tensor<1, 3>
+mean_normal(const std::array<dealii::Point<3>, 4> &x)
+{
+  return dealii::cross_product_3d(x[2] - x[0], x[3] - x[1]);
+}
 } // namespace
 
 template <int dim>
@@ -49,7 +62,13 @@ LocalSearch<dim>::update()
       double square = 0;
       for (const auto &p : x)
         square = std::max(square, centre.distance_square(p));
-      balls[f] = {centre, std::sqrt(square)};
+      dealii::Tensor<1, dim> normal = mean_normal(x);
+      const double           length = normal.norm();
+      normal                        = (length > 0 ? 1 / length : 0.) * normal;
+      double warp                   = 0;
+      for (const auto &p : x)
+        warp = std::max(warp, std::abs((p - centre) * normal));
+      balls[f] = {centre, std::sqrt(square), normal, warp};
     }
 }
 
@@ -69,10 +88,12 @@ LocalSearch<dim>::collect_pairs(const PointSet<dim> &points,
       const double r = points.radius(p) + travel;
       for (std::size_t k = candidates.begin[i]; k < candidates.begin[i + 1]; ++k)
         {
-          const unsigned int f = candidates.facet[k];
-          const double       reach =
-            balls[f].radius + r + 0.5 * surface->bodies[surface->facets[f].body].thickness;
-          if (x.distance_square(balls[f].centre) < reach * reach)
+          const unsigned int f     = candidates.facet[k];
+          const auto        &ball  = balls[f];
+          const auto         way   = x - ball.centre;
+          const double       reach = r + 0.5 * surface->bodies[surface->facets[f].body].thickness;
+          if (way.norm_square() < (reach + ball.radius) * (reach + ball.radius) &&
+              std::abs(way * ball.normal) < (reach + ball.warp) * (1 + 1e-12))
             {
               pairs.emplace_back();
               pairs.back().point = p;

@@ -7,6 +7,10 @@ namespace coracle::contact
 {
 namespace
 {
+/// The first rest, how much later each next one begins, and its length, in iterations so far.
+constexpr unsigned int first_rest  = 40;
+constexpr double       rest_growth = 1.5, rest_part = 0.1;
+
 /// a += theta * (a - last), and last becomes what a was.
 template <typename Value>
 void
@@ -19,13 +23,25 @@ move_on(const double theta, std::vector<Value> &a, std::vector<Value> &last)
       last[i] = now;
     }
 }
+
+/// last += sign * a.
+template <typename Value>
+void
+add(const double sign, const std::vector<Value> &a, std::vector<Value> &last)
+{
+  for (std::size_t i = 0; i < a.size(); ++i)
+    last[i] += sign * a[i];
+}
 } // namespace
 
 template <int dim>
 void
-Momentum<dim>::restart(const std::vector<Vector> &impulses, const Velocities<dim> &v)
+Momentum<dim>::restart(const std::vector<Lanes<dim>> &impulses, const LaneVelocities<dim> &v)
 {
   t             = 1;
+  iteration     = 0;
+  rest_begin    = first_rest;
+  rest_end      = 0;
   last          = impulses;
   start         = impulses;
   last_velocity = v;
@@ -33,18 +49,52 @@ Momentum<dim>::restart(const std::vector<Vector> &impulses, const Velocities<dim
 
 template <int dim>
 double
-Momentum<dim>::turn(const Delassus<dim> &delassus, const std::vector<Vector> &impulses) const
+Momentum<dim>::turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>> &impulses) const
 {
   double      result = 0;
   const auto &rows   = delassus.rows();
   for (std::size_t c = 0; c < rows.size(); ++c)
-    result += rows[c].normal_inverse_mass * ((start[c] - impulses[c]) * (impulses[c] - last[c]));
+    result += rows[c].normal_inverse_mass * dot<dim>(start[c] - impulses[c], impulses[c] - last[c]);
   return result;
 }
 
 template <int dim>
 void
-Momentum<dim>::extrapolate(const bool turned, std::vector<Vector> &impulses, Velocities<dim> &v)
+Momentum<dim>::advance(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v)
+{
+  ++iteration;
+  const bool resting = iteration <= rest_end;
+  if (iteration == rest_begin)
+    {
+      make_relative(-1, impulses, v);
+      rest_end   = iteration + static_cast<unsigned int>(rest_part * iteration);
+      rest_begin = rest_end + static_cast<unsigned int>((rest_growth - 1) * iteration);
+    }
+  if (iteration < rest_end)
+    return;
+  if (resting)
+    make_relative(1, impulses, v);
+  // Directions before and after a rest cannot be compared.
+  extrapolate(turned && !resting, impulses, v);
+}
+
+template <int dim>
+void
+Momentum<dim>::make_relative(const double                   sign,
+                             const std::vector<Lanes<dim>> &impulses,
+                             const LaneVelocities<dim>     &v)
+{
+  add(sign, impulses, last);
+  add(sign, v.nodes, last_velocity.nodes);
+  add(sign, v.rigid, last_velocity.rigid);
+  add(sign, v.spin, last_velocity.spin);
+}
+
+template <int dim>
+void
+Momentum<dim>::extrapolate(const bool               turned,
+                           std::vector<Lanes<dim>> &impulses,
+                           LaneVelocities<dim>     &v)
 {
   const double next  = (turned ? 1. : 0.5 * (1 + std::sqrt(1 + 4 * t * t))),
                theta = (turned ? 0. : (t - 1) / next);

@@ -117,7 +117,8 @@ ContactOptions::declare(Declaration &section)
                    "1",
                    "",
                    "How much farther than needed candidates are looked for, in contact distances; "
-                   "more means rarer but longer searches",
+                   "more means rarer but longer searches. Down to half of it is taken where "
+                   "particles are renumbered before more would be used up",
                    0.01);
   section.choice(
     "Search",

@@ -105,8 +105,8 @@ SharedUnknowns<dim>::keep_shared(const std::vector<std::vector<unsigned int>> &s
 
 template <int dim>
 void
-SharedUnknowns<dim>::average_change(std::vector<dealii::Tensor<1, dim>>       &value,
-                                    const std::vector<dealii::Tensor<1, dim>> &before)
+SharedUnknowns<dim>::average_change(std::vector<Lanes<dim>>       &value,
+                                    const std::vector<Lanes<dim>> &before)
 {
   requests.clear();
   const auto start = [this](auto call, Exchange &e, const int tag) {
@@ -134,8 +134,8 @@ SharedUnknowns<dim>::average_change(std::vector<dealii::Tensor<1, dim>>       &v
 
   // The owner adds up in the order of the ranks, so that the result does not depend on timing.
   for (unsigned int s = 0; s < slot_sum.size(); ++s)
-    slot_sum[s] = (slot_unknown[s] >= 0 ? value[slot_unknown[s]] - before[slot_unknown[s]]
-                                        : dealii::Tensor<1, dim>());
+    slot_sum[s] =
+      (slot_unknown[s] >= 0 ? value[slot_unknown[s]] - before[slot_unknown[s]] : Lanes<dim>{});
   for (const auto &down : from_users)
     for (unsigned int i = 0; i < down.index.size(); ++i)
       for (int d = 0; d < dim; ++d)

@@ -106,6 +106,16 @@ SheetCrossing<dim>::update()
         middle += surface->nodes[node].position / vertices_per_facet<dim>;
       vertices.push_back(middle);
     }
+  if constexpr (dim == 3)
+    {
+      normals.resize(simplices.size());
+      for (unsigned int s = 0; s < simplices.size(); ++s)
+        {
+          const auto &[a, b, c] = simplices[s];
+          normals[s] =
+            dealii::cross_product_3d(vertices[b] - vertices[a], vertices[c] - vertices[a]);
+        }
+    }
   boxes.assign(simplices.size(), Box());
   for (unsigned int s = 0; s < simplices.size(); ++s)
     for (int d = 0; d < dim; ++d)
@@ -117,6 +127,18 @@ SheetCrossing<dim>::update()
             boxes[s].upper[d] = std::max(boxes[s].upper[d], vertices[v][d]);
           }
       }
+}
+
+template <int dim>
+void
+SheetCrossing<dim>::within(const Box                 &around,
+                           const List                &list,
+                           std::vector<unsigned int> &result) const
+{
+  result.clear();
+  for (const unsigned int s : list)
+    if (overlap(around, boxes[s]))
+      result.push_back(s);
 }
 
 template <int dim>
@@ -165,9 +187,7 @@ SheetCrossing<3>::meets(const dealii::Point<3> &p,
 {
   const auto &x    = simplices[s];
   const auto  side = [&](const dealii::Point<3> &y) {
-    return determinant(vertices[x[1]] - vertices[x[0]],
-                       vertices[x[2]] - vertices[x[0]],
-                       y - vertices[x[0]]) >= 0;
+    return normals[s] * (y - vertices[x[0]]) >= 0;
   };
   if (side(p) == side(q))
     return false;

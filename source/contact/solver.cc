@@ -61,9 +61,9 @@ void
 Solver<dim>::measure(const std::vector<Contact<dim>> &contacts)
 {
   for (std::size_t c = 0; c < contacts.size(); ++c)
-    statistics.scale =
-      std::max(statistics.scale,
-               -(delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal));
+    statistics.scale = std::max(statistics.scale,
+                                -dot<dim>(delassus.relative_velocity(delassus.rows()[c], velocity),
+                                          delassus.rows()[c].normal));
   MPI_Allreduce(MPI_IN_PLACE, &statistics.scale, 1, MPI_DOUBLE, MPI_MAX, communicator);
 }
 
@@ -76,9 +76,11 @@ Solver<dim>::measure_result(const std::vector<Contact<dim>> &contacts)
       const auto &row = delassus.rows()[c];
       if (row.fixed)
         continue;
-      const auto u = delassus.relative_velocity(row, velocity);
-      statistics.work +=
-        0.5 * (result.impulse[c] * (u + delassus.relative_velocity(row, delassus.predicted)));
+      const auto u = to_tensor<dim>(delassus.relative_velocity(row, velocity));
+      if (result.impulse[c].norm_square() > 0)
+        statistics.work +=
+          0.5 * (result.impulse[c] *
+                 (u + to_tensor<dim>(delassus.relative_velocity(row, delassus.predicted))));
       if (options.law == Law::split || active[c])
         statistics.worst_violation =
           std::max(statistics.worst_violation, target[c] - u * contacts[c].normal);
@@ -115,9 +117,9 @@ Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const do
   double deepest = 0, largest_distance = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
-      const double u =
-        delassus.relative_velocity(delassus.rows()[c], velocity) * contacts[c].normal;
-      target[c] = (contacts[c].distance - contacts[c].gap) / dt - u;
+      const double u = dot<dim>(delassus.relative_velocity(delassus.rows()[c], velocity),
+                                delassus.rows()[c].normal);
+      target[c]      = (contacts[c].distance - contacts[c].gap) / dt - u;
       if (!delassus.rows()[c].fixed)
         deepest = std::max(deepest, target[c]);
       largest_distance = std::max(largest_distance, contacts[c].distance);
@@ -137,7 +139,8 @@ Solver<dim>::solve_positions(const std::vector<Contact<dim>> &contacts, const do
   for (auto &correction : result.correction)
     correction *= dt;
   for (const auto &rate : displacement_rate.nodes)
-    statistics.largest_correction = std::max(statistics.largest_correction, dt * rate.norm());
+    statistics.largest_correction =
+      std::max(statistics.largest_correction, dt * to_tensor<dim>(rate).norm());
   MPI_Allreduce(MPI_IN_PLACE, &statistics.largest_correction, 1, MPI_DOUBLE, MPI_MAX, communicator);
 }
 
@@ -166,6 +169,16 @@ Solver<dim>::solve_near(const std::vector<Contact<dim>> &contacts, const double 
                                         velocity,
                                         communicator);
   measure_result(contacts);
+}
+
+template <int dim>
+Velocities<dim>
+Solver<dim>::velocities() const
+{
+  Velocities<dim> result{{}, velocity.rigid, velocity.spin};
+  for (const auto &node : velocity.nodes)
+    result.nodes.push_back(to_tensor<dim>(node));
+  return result;
 }
 
 template class Solver<2>;

@@ -10,32 +10,33 @@ IterationReport
 solve_stick_slip(Delassus<dim>                       &delassus,
                  const std::vector<bool>             &active,
                  std::vector<dealii::Tensor<1, dim>> &impulses,
-                 Velocities<dim>                     &v,
+                 LaneVelocities<dim>                 &v,
                  MPI_Comm                             communicator)
 {
-  const auto           &rows   = delassus.rows();
-  const Velocities<dim> before = v;
+  const auto               &rows   = delassus.rows();
+  const LaneVelocities<dim> before = v;
   for (std::size_t c = 0; c < rows.size(); ++c)
     {
       const auto &row = rows[c];
       impulses[c]     = dealii::Tensor<1, dim>();
       if (!active[c] || row.fixed)
         continue;
-      const auto   u        = delassus.relative_velocity(row, before);
-      const double approach = -(u * row.normal);
+      const auto   n        = to_tensor<dim>(row.normal);
+      const auto   u        = to_tensor<dim>(delassus.relative_velocity(row, before));
+      const double approach = -(u * n);
       if (approach <= 0)
         continue;
-      const double normal = approach / row.true_inverse_mass;
-      impulses[c]         = normal * row.normal;
-      if (row.friction > 0)
+      const double normal = approach / delassus.true_inverse_masses()[c].normal;
+      impulses[c]         = normal * n;
+      if (row.has_friction)
         {
-          auto         tangential = -(u + approach * row.normal) / row.true_tangential_inverse_mass;
-          const double size = tangential.norm(), limit = row.friction * normal;
+          auto tangential   = -(u + approach * n) / delassus.true_inverse_masses()[c].tangential;
+          const double size = tangential.norm(), limit = delassus.sliding(c).friction * normal;
           if (size > limit)
             tangential *= limit / size;
           impulses[c] += tangential;
         }
-      delassus.apply(row, impulses[c], v);
+      delassus.apply(row, to_lanes<dim>(impulses[c]), v);
     }
   double unused = 0;
   delassus.synchronise(v, before, unused);
@@ -44,8 +45,8 @@ solve_stick_slip(Delassus<dim>                       &delassus,
   report.iterations = 1;
   for (std::size_t c = 0; c < rows.size(); ++c)
     if (active[c] && !rows[c].fixed)
-      report.residual =
-        std::max(report.residual, -(delassus.relative_velocity(rows[c], v) * rows[c].normal));
+      report.residual = std::max(report.residual,
+                                 -dot<dim>(delassus.relative_velocity(rows[c], v), rows[c].normal));
   MPI_Allreduce(MPI_IN_PLACE, &report.residual, 1, MPI_DOUBLE, MPI_MAX, communicator);
   return report;
 }
@@ -53,11 +54,11 @@ solve_stick_slip(Delassus<dim>                       &delassus,
 template IterationReport solve_stick_slip(Delassus<2> &,
                                           const std::vector<bool> &,
                                           std::vector<dealii::Tensor<1, 2>> &,
-                                          Velocities<2> &,
+                                          LaneVelocities<2> &,
                                           MPI_Comm);
 template IterationReport solve_stick_slip(Delassus<3> &,
                                           const std::vector<bool> &,
                                           std::vector<dealii::Tensor<1, 3>> &,
-                                          Velocities<3> &,
+                                          LaneVelocities<3> &,
                                           MPI_Comm);
 } // namespace coracle::contact

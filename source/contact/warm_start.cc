@@ -45,6 +45,28 @@ WarmStart<dim>::store(const std::vector<Key>                    &keys,
       }
 }
 
+template <int dim>
+void
+WarmStart<dim>::serialize(Archive &archive)
+{
+  std::vector<Key>                    keys;
+  std::vector<dealii::Tensor<1, dim>> impulses;
+  // From a free slot on, so that entries are met in the order in which they came.
+  std::size_t first = 0;
+  while (first < slots.size() && slots[first].used)
+    ++first;
+  for (std::size_t i = 0; i < slots.size() && !archive.loads(); ++i)
+    if (const Slot &slot = slots[(first + i) % slots.size()]; slot.used)
+      {
+        keys.push_back(slot.key);
+        impulses.push_back(slot.impulse);
+      }
+  archive.all("keys", keys);
+  archive.all("impulses", impulses);
+  if (archive.loads())
+    store(keys, impulses);
+}
+
 template class WarmStart<2>;
 template class WarmStart<3>;
 } // namespace coracle::contact

@@ -31,6 +31,17 @@ largest_speed(const MaterialPointSystem<dim> &points, StructureSystem<dim> &stru
 }
 } // namespace
 
+void
+AdaptivityState::serialize(Archive &archive)
+{
+  const Archive::Section part(archive, "adaptivity");
+  archive.same("next_id", next_id);
+  archive.same("steps", steps);
+  archive.same("steps_since_balance", steps_since_balance);
+  archive.same("travelled", travelled);
+  archive.same("reached_imbalance", reached_imbalance);
+}
+
 template <int dim>
 void
 Adaptivity<dim>::declare(Declaration &grid)

@@ -253,6 +253,27 @@ ContactCoupling<dim>::audit(const MaterialPointSystem<dim> &points, StructureSys
   penetrations += system.audit(surface, sets);
 }
 
+template <int dim>
+void
+ContactCoupling<dim>::serialize(Archive &archive, MaterialPointSystem<dim> &points)
+{
+  surface_nodes.serialize(archive);
+  system.serialize(archive);
+  archive.share("contact_momentum_of_points", received);
+  archive.same("penetrations", penetrations);
+  {
+    const Archive::Section part(archive, "report_with_grid");
+    report_with_grid.serialize(archive);
+  }
+  {
+    const Archive::Section part(archive, "leaf_contacts");
+    in_leaves.serialize(archive, points.octree.n_owned_leaves());
+  }
+  // What is known of points since they were numbered has not changed since.
+  if (archive.loads())
+    make_point_sets(points, true);
+}
+
 template class ContactCoupling<2>;
 template class ContactCoupling<3>;
 } // namespace coracle

@@ -20,6 +20,13 @@ CouplingOptions<dim>::declare(Declaration &root)
                 1e-6,
                 1.);
   time.quantity("Largest step", "1e300", "s", "", "Steps are never longer.", 1e-300);
+  time.quantity("Smallest share",
+                "1e-3",
+                "1",
+                "",
+                "The run fails where the step falls below this share of the first one.",
+                0.,
+                1.);
 }
 
 template <int dim>
@@ -27,8 +34,9 @@ CouplingOptions<dim>
 CouplingOptions<dim>::read(const Parameters &root)
 {
   CouplingOptions result;
-  result.safety_factor = root.section("Time").quantity("Safety factor");
-  result.largest_step  = root.section("Time").quantity("Largest step");
+  result.safety_factor  = root.section("Time").quantity("Safety factor");
+  result.largest_step   = root.section("Time").quantity("Largest step");
+  result.smallest_share = root.section("Time").quantity("Smallest share");
   // Contact on the grid's nodes knows one record of each.
   const Parameters contact = root.section("Contact");
   result.split_fields = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
@@ -78,17 +86,54 @@ Coupling<dim>::declare(Declaration &root)
 }
 
 template <int dim>
-Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm)
+Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree)
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
   , structure(root, materials, options.gravity, comm)
-  , points(root, materials, options.gravity, structure.n_sheets(), comm)
+  , points(root, materials, options.gravity, structure.n_sheets(), comm, saved_octree)
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
   , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
   , comm(comm)
 {
-  projected = contacts.resolve_initial_overlaps(root, points, structure);
-  adaptivity.initialise(points, structure, contacts);
+  if (saved_octree.empty())
+    {
+      projected = contacts.resolve_initial_overlaps(root, points, structure);
+      adaptivity.initialise(points, structure, contacts);
+    }
+}
+
+template <int dim>
+void
+Coupling<dim>::serialize(Archive &archive)
+{
+  archive.same("time", current_time);
+  archive.same("dt", current_dt);
+  archive.same("first_dt", first_dt);
+  archive.same("step", n_steps);
+  structure.serialize(archive);
+  points.serialize(archive);
+  contacts.serialize(archive, points);
+  adaptivity.state.serialize(archive);
+  if (!archive.is_exact())
+    share_out();
+  archive.share("particle_steps", particle_steps);
+  archive.same("contact_steps", contact_steps);
+  archive.same("unconverged_contact_steps", unconverged_contact_steps);
+  archive.same("worst_gap", worst_gap);
+}
+
+// Other ranks get leaves in even numbers first. The next step is as long as it would have been.
+template <int dim>
+void
+Coupling<dim>::share_out()
+{
+  std::vector<StressSweep> sweeps;
+  for (const auto &body : points.bodies)
+    sweeps.push_back(body.sweep);
+  adaptivity.balance(points, contacts);
+  auto sweep = sweeps.begin();
+  for (auto &body : points.bodies)
+    body.sweep = *sweep++;
 }
 
 template <int dim>
@@ -104,6 +149,7 @@ void
 Coupling<dim>::advance(const double end_time)
 {
   double dt = timed("time step", [&] { return choose_time_step(); });
+  check_time_step(dt);
   // No sliver of a step at the end: the last two share what is left.
   const double left = end_time - current_time;
   dt                = left <= dt ? left : std::min(dt, 0.5 * left);
@@ -150,6 +196,25 @@ Coupling<dim>::advance(const double end_time)
   timed("adapt", [&] { adaptivity.update(points, structure, contacts, current_time, dt); });
   timed("checks", [&] { check_state(); });
   count_work();
+}
+
+template <int dim>
+void
+Coupling<dim>::check_time_step(const double dt)
+{
+  if (n_steps == 0)
+    first_dt = dt;
+  // Also where it is not a number.
+  if (dt > 0 && dt >= options.smallest_share * first_dt)
+    return;
+  std::ostringstream details;
+  details << "a step of " << dt << " s after one of " << current_dt << " s at t = " << current_time
+          << " s (step " << n_steps << "), the first was " << first_dt << " s; "
+          << (structure.stable_time_step() < points.stable_time_step() ? structure.describe_limit()
+                                                                       : points.describe_limit());
+  throw RunFailure("the time step has collapsed",
+                   details.str(),
+                   "look at what happens there; if it is meant to, lower Time/Smallest share");
 }
 
 template <int dim>

@@ -26,6 +26,16 @@ unite(contact::Box &box, const contact::Box &other, const double margin = 0)
 }
 
 template <int dim>
+bool
+is_inside(const contact::Box &box, const dealii::Point<dim> &x)
+{
+  bool result = true;
+  for (int d = 0; d < dim; ++d)
+    result &= (box.lower[d] < x[d]) & (x[d] < box.upper[d]);
+  return result;
+}
+
+template <int dim>
 contact::Box
 empty_box()
 {
@@ -131,10 +141,9 @@ FieldSplit<dim>::follow_sheets(const bool gimp)
   way = mpi::max(way, comm);
   if (way == 0 && !moved)
     return;
-  const double skin = skin_of_moving_sheets * smallest_cell;
-  if (way > skin)
+  if (way > searched_skin)
     // Sheets that have never moved may never do.
-    find_near_leaves(searched ? skin : on_surface * smallest_cell, gimp);
+    find_near_leaves((searched ? skin_of_moving_sheets : on_surface) * smallest_cell, gimp);
   else
     {
       moved = true;
@@ -196,8 +205,9 @@ template <int dim>
 void
 FieldSplit<dim>::find_near_leaves(const double skin, const bool gimp)
 {
-  searched = true;
-  moved    = false;
+  searched      = true;
+  moved         = false;
+  searched_skin = skin;
   searched_at.clear();
   for (const auto &node : sheets.nodes)
     searched_at.push_back(node.position);
@@ -280,12 +290,31 @@ FieldSplit<dim>::place_of_node(const unsigned int node, const typename Crossing:
   return cleared[place];
 }
 
+// Around a particle and the nodes of the leaves that its box meets, if they are as large as its
+// own.
+template <int dim>
+contact::Box
+FieldSplit<dim>::box_around(const dealii::Point<dim> &x,
+                            const unsigned int        leaf,
+                            const double              half) const
+{
+  const double room = half + (1 + 2 * on_surface) * octree.size(leaf);
+  contact::Box box;
+  for (int d = 0; d < dim; ++d)
+    {
+      box.lower[d] = x[d] - room;
+      box.upper[d] = x[d] + room;
+    }
+  return box;
+}
+
 template <int dim>
 void
 FieldSplit<dim>::cut(MaterialPointBody<dim> &body, NodeSplit<dim> &split)
 {
   find_candidates(body);
-  PointCutter<dim> cutter(octree, body.margin_of_shape(), split, body.points);
+  PointCutter<dim>    cutter(octree, body.margin_of_shape(), split, body.points);
+  const double *const size = body.points.column(ParticleLayout<dim>::size);
   for (const auto &[row, place] : candidates)
     {
       const typename Crossing::List list{near.data() + begin[place],
@@ -296,8 +325,13 @@ FieldSplit<dim>::cut(MaterialPointBody<dim> &body, NodeSplit<dim> &split)
       };
       const dealii::Point<dim> x =
         crossing.clear_of(body.points.position(row), list, on_surface * smallest_cell, side);
+      // Nearly all nodes that are asked for are near, and few simplices are.
+      const auto around = box_around(x, near_leaves[place], body.margin_of_shape() * size[row]);
+      crossing.within(around, list, close);
+      const typename Crossing::List close_list{close.data(), close.data() + close.size()};
       cutter.cut(row, near_leaves[place], [&](const unsigned int node) {
-        return crossing.between(x, place_of_node(node, list), list);
+        const auto &y = place_of_node(node, list);
+        return crossing.between(x, y, is_inside(around, y) ? close_list : list);
       });
     }
   cutter.finish();

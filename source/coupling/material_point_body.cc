@@ -157,7 +157,8 @@ template <int dim>
 MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
                                           const MaterialLibrary &materials,
                                           const Octree<dim>     &octree,
-                                          const int              n_sheets)
+                                          const int              n_sheets,
+                                          const bool             with_particles)
   : points(body.name(), find_needs(materials.get(body.text("Material"), body), body, n_sheets))
   , material(materials.get(body.text("Material"), body))
   , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle
@@ -181,7 +182,8 @@ MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
                                                 : StressUpdate::musl;
   if (body.is_set("Body force"))
     body_force = body.function<dim>("Body force", dim);
-  generate(body, octree);
+  if (with_particles)
+    generate(body, octree);
 }
 
 template <int dim>
@@ -328,6 +330,17 @@ MaterialPointBody<dim>::damp(const double time, const double dt)
         v[row] *= factor;
     }
   return before * (1. - factor * factor);
+}
+
+template <int dim>
+void
+MaterialPointBody<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "body " + name());
+  points.serialize(archive);
+  archive.largest("rate", sweep.rate);
+  archive.largest("diffusion_rate", sweep.diffusion_rate);
+  archive.share("internal_energy", internal_energy);
 }
 
 template class MaterialPointBody<2>;

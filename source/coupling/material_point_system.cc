@@ -39,10 +39,12 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
                                               const MaterialLibrary        &materials,
                                               const dealii::Tensor<1, dim> &gravity,
                                               const int                     n_sheets,
-                                              MPI_Comm                      comm)
+                                              MPI_Comm                      comm,
+                                              const std::string            &saved_octree)
   : octree(OctreeDescription<dim>::read(root.section("Grid")),
            particle_weight<dim>(root.section("Bodies")),
-           comm)
+           comm,
+           saved_octree)
   , boundary(BoxBoundary<dim>::read(root.section("Grid")), octree)
   , split(octree)
   , gravity(gravity)
@@ -51,10 +53,31 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
     if (section.section(name).choice("Kind") == "material points")
-      bodies.emplace_back(section.section(name), materials, octree, n_sheets);
+      bodies.emplace_back(section.section(name), materials, octree, n_sheets, saved_octree.empty());
   make_fields();
   for (auto &body : bodies)
     energy.kinetic += body.points.kinetic_energy();
+}
+
+template <int dim>
+void
+MaterialPointSystem<dim>::serialize(Archive &archive)
+{
+  for (auto &body : bodies)
+    {
+      body.serialize(archive);
+      if (!archive.is_exact())
+        redistribute(octree, body.margin_of_shape(), body.points);
+    }
+  archive.share("energy.kinetic", energy.kinetic);
+  archive.share("energy.internal", energy.internal);
+  archive.share("energy.damping", energy.damping);
+  archive.share("energy.transfer", energy.transfer);
+  archive.share("energy.boundary", energy.boundary);
+  archive.share("energy.contact", energy.contact);
+  archive.share("energy.external_work", energy.external_work);
+  archive.same("steps_since_sort", steps_since_sort);
+  archive.own("renumbered", renumbered);
 }
 
 template <int dim>
@@ -104,6 +127,46 @@ MaterialPointSystem<dim>::stable_time_step() const
     }
   rate = mpi::max(rate, octree.triangulation.get_communicator());
   return rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity();
+}
+
+template <int dim>
+std::string
+MaterialPointSystem<dim>::describe_limit() const
+{
+  using Layout        = ParticleLayout<dim>;
+  const MPI_Comm comm = octree.triangulation.get_communicator();
+  const auto     rate = [comm](const auto &body) {
+    return mpi::max(body.sweep.rate + 2 * dim * body.sweep.diffusion_rate, comm);
+  };
+  const auto body =
+    std::max_element(bodies.begin(), bodies.end(), [&](const auto &a, const auto &b) {
+      return rate(a) < rate(b);
+    });
+  if (body == bodies.end())
+    return "";
+  // Speed, id, place.
+  std::array<double, 2 + dim> fastest{};
+  for (std::size_t row = 0; row < body->points.n_rows(); ++row)
+    {
+      double square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += std::pow(body->points.column(Layout::velocity + d)[row], 2);
+      if (square > fastest[0])
+        {
+          fastest = {square, static_cast<double>(body->points.id(row))};
+          for (int d = 0; d < dim; ++d)
+            fastest[2 + d] = body->points.position(row)[d];
+        }
+    }
+  for (const auto &other : dealii::Utilities::MPI::all_gather(comm, fastest))
+    fastest = std::max(fastest, other);
+  std::ostringstream text;
+  text << "'" << body->name() << "' asks for it, whose fastest particle is number " << fastest[1]
+       << " at (";
+  for (int d = 0; d < dim; ++d)
+    text << (d > 0 ? ", " : "") << fastest[2 + d];
+  text << ") m with " << std::sqrt(fastest[0]) << " m/s";
+  return text.str();
 }
 
 template <int dim>

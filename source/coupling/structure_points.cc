@@ -222,6 +222,24 @@ StructurePoints<dim>::refuse_initial_overlaps(const Parameters     &root,
                                                    cure.str());
 }
 
+template <int dim>
+void
+StructurePoints<dim>::serialize(Archive &archive)
+{
+  for (auto &part : parts)
+    if (!part.side.empty())
+      {
+        Columns sides(part.side.size());
+        sides.resize(part.keys.size());
+        for (unsigned int s = 0; s < part.side.size(); ++s)
+          std::copy(part.side[s].begin(), part.side[s].end(), sides[s]);
+        archive.keyed(
+          "sides of nodes " + std::to_string(part.body), part.keys, part.keys.size(), sides, {});
+        for (unsigned int s = 0; s < part.side.size(); ++s)
+          std::copy_n(sides[s], sides.size(), part.side[s].begin());
+      }
+}
+
 template class StructurePoints<2>;
 template class StructurePoints<3>;
 } // namespace coracle

@@ -122,6 +122,18 @@ StructureSystem<dim>::stable_time_step() const
 }
 
 template <int dim>
+std::string
+StructureSystem<dim>::describe_limit() const
+{
+  const double smallest = stable_time_step();
+  std::string  result;
+  for (const auto &body : solids)
+    if (mpi::min(body.stable_time_step(), comm) == smallest && result.empty())
+      result = "the smallest element of '" + body.name() + "' asks for it";
+  return result;
+}
+
+template <int dim>
 void
 StructureSystem<dim>::assemble_forces(const double time)
 {
@@ -154,7 +166,7 @@ StructureSystem<dim>::update_stresses(const double dt)
     catch (const RunFailure &bad)
       {
         if (!failure)
-          failure.emplace(bad);
+          failure.emplace(bad.title, "'" + body.name() + "': " + bad.details, bad.cure);
       }
   });
 }
@@ -239,6 +251,14 @@ StructureSystem<dim>::apply_node_impulses(
         }
     body.apply_contact_impulses();
   });
+}
+
+template <int dim>
+void
+StructureSystem<dim>::serialize(Archive &archive)
+{
+  for_each_surface([&](auto &body, const unsigned int) { body.serialize(archive); });
+  archive.share("contact_momentum_of_structures", received);
 }
 
 template class StructureSystem<2>;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/distributed/p4est_wrappers.h>
+
 #include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
 
@@ -9,6 +11,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/grid/octree.h>
 
+#include <fstream>
 #include <map>
 
 namespace coracle
@@ -16,7 +19,8 @@ namespace coracle
 template <int dim>
 Octree<dim>::Octree(const OctreeDescription<dim> &description,
                     const std::function<double(const dealii::Point<dim> &, const double)> &weight,
-                    MPI_Comm communicator)
+                    MPI_Comm           communicator,
+                    const std::string &saved)
   : triangulation(communicator,
                   dealii::Triangulation<dim>::none,
                   dealii::parallel::distributed::Triangulation<dim>::default_setting)
@@ -24,8 +28,12 @@ Octree<dim>::Octree(const OctreeDescription<dim> &description,
   , description(description)
   , fe(1)
 {
-  make_grid();
-  if (weight)
+  make_coarse_grid();
+  if (saved.empty())
+    refine();
+  else
+    load(saved);
+  if (weight && saved.empty())
     partition(weight);
   number();
 }
@@ -43,7 +51,7 @@ Octree<dim>::number()
 
 template <int dim>
 void
-Octree<dim>::make_grid()
+Octree<dim>::make_coarse_grid()
 {
   const auto &[lower, upper] = description.box.get_boundary_points();
   std::vector<unsigned int> n_cells(dim);
@@ -63,8 +71,13 @@ Octree<dim>::make_grid()
     }
   dealii::GridGenerator::subdivided_hyper_rectangle(
     triangulation, n_coarse_cells, lower, upper, true);
-  triangulation.refine_global(base_level);
+}
 
+template <int dim>
+void
+Octree<dim>::refine()
+{
+  triangulation.refine_global(base_level);
   for (bool changed = true; changed;)
     {
       changed = false;
@@ -81,6 +94,43 @@ Octree<dim>::make_grid()
       if (changed)
         triangulation.execute_coarsening_and_refinement();
     }
+}
+
+// Triangulation::load(file) shares the leaves out anew; here they stay with their ranks if there
+// are as many.
+template <int dim>
+void
+Octree<dim>::load(const std::string &file)
+{
+  using p4est         = dealii::internal::p4est::functions<dim>;
+  const MPI_Comm comm = triangulation.get_communicator();
+  std::ifstream  info(file + ".info");
+  std::string    titles;
+  unsigned int   version = 0, n_saved = 0;
+  std::getline(info, titles);
+  info >> version >> n_saved;
+  typename dealii::internal::p4est::types<dim>::connectivity *connectivity = nullptr;
+
+  auto *const forest = p4est::load_ext(
+    file.c_str(), comm, 0, 0, n_saved != mpi::n_ranks(comm), 0, nullptr, &connectivity);
+  triangulation.load(forest);
+  p4est::destroy(forest);
+  p4est::connectivity_destroy(connectivity);
+}
+
+template <int dim>
+void
+Octree<dim>::save(const std::string &file) const
+{
+  triangulation.save(file);
+}
+
+template <int dim>
+std::uint64_t
+Octree<dim>::saved_size() const
+{
+  // A quadrant is three coordinates and a level; the coarse mesh comes before them.
+  return 32 * triangulation.n_global_active_cells() + 512 * triangulation.n_cells(0) + 65536;
 }
 
 template <int dim>

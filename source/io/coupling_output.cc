@@ -143,6 +143,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write(Coupling<dim> &coupling)
 {
+  files_step     = coupling.step();
   unsigned int i = 0;
   for (auto &body : coupling.points.bodies)
     write_particles(body, particles[i++], coupling.time());
@@ -397,6 +398,7 @@ template <int dim>
 void
 CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &coupling)
 {
+  row_step = coupling.step();
   statistics.begin_row();
   set_standard_columns(statistics, report);
   auto summary = report.bodies.end() - coupling.points.bodies.size();
@@ -442,6 +444,27 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
           probe.set_columns(view, statistics);
         }
   statistics.end_row();
+}
+
+template <int dim>
+void
+CouplingOutput<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "output");
+  mpi::agree([&] { statistics.serialize(archive); }, comm);
+  for (auto &series : particles)
+    series.serialize(archive);
+  for (auto &series : structures)
+    series.serialize(archive);
+  if (octree)
+    octree->serialize(archive);
+  balance.serialize(archive);
+  archive.same("reported_momentum", reported_momentum);
+  archive.same("reported_force", reported_force);
+  archive.same("reported_time", reported_time);
+  archive.same("first_report", first_report);
+  archive.same("files_step", files_step);
+  archive.same("row_step", row_step);
 }
 
 template class CouplingOutput<2>;

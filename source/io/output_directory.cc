@@ -14,13 +14,6 @@ namespace
 const char *const title = "the output folder can't be used";
 const char *const cure  = "set Output/Directory to a folder that may be created and written to";
 
-std::string
-choose_path(const Parameters &output_section, const std::string &case_file)
-{
-  const std::string given = output_section.text("Directory");
-  return given.empty() ? "output/" + std::filesystem::path(case_file).stem().string() : given;
-}
-
 /// Is this NAME.NNNNNN<anything>, a data file of the series NAME?
 bool
 belongs_to(const std::string &file, const std::string &name)
@@ -33,8 +26,9 @@ belongs_to(const std::string &file, const std::string &name)
 
 OutputDirectory::OutputDirectory(const Parameters  &output_section,
                                  const std::string &case_file,
-                                 MPI_Comm           communicator)
-  : directory(choose_path(output_section, case_file)), comm(communicator)
+                                 MPI_Comm           communicator,
+                                 const bool         goes_on)
+  : directory(choose(output_section, case_file)), comm(communicator), goes_on(goes_on)
 {
   const std::string problem = create();
   if (!problem.empty())
@@ -47,6 +41,13 @@ OutputDirectory::OutputDirectory(const std::string &path, MPI_Comm communicator)
   const std::string problem = create();
   if (!problem.empty())
     throw UserError(title, "Output/Directory", problem, cure);
+}
+
+std::string
+OutputDirectory::choose(const Parameters &output_section, const std::string &case_file)
+{
+  const std::string given = output_section.text("Directory");
+  return given.empty() ? "output/" + std::filesystem::path(case_file).stem().string() : given;
 }
 
 std::string
@@ -77,7 +78,7 @@ OutputDirectory::claim(const std::string &series_name)
                     "the name '" + series_name + "' (files " + name + ".*) is taken",
                     "give the body another name ('octree' is the background grid's own)");
 
-  if (mpi::rank(comm) == 0)
+  if (mpi::rank(comm) == 0 && !goes_on)
     {
       std::error_code ignored;
       for (const auto &entry : std::filesystem::directory_iterator(directory + "/data", ignored))

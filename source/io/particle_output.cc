@@ -59,6 +59,17 @@ ParticleOutput::ParticleOutput(OutputDirectory      &directory,
 }
 
 void
+ParticleOutput::serialize(Archive &archive)
+{
+  if (archive.has(name + ".grids"))
+    archive.same(name + ".grids", grids);
+  if (vtu)
+    vtu->serialize(archive);
+  if (archive.loads() && !grids.empty())
+    write_xdmf();
+}
+
+void
 ParticleOutput::write(const double              time,
                       const std::size_t         n_particles,
                       const std::vector<Field> &fields)

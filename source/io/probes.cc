@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <coracle/base/mpi.h>
 #include <coracle/io/probes.h>
 
 #include <algorithm>
@@ -113,11 +114,10 @@ BodyPointProbe<dim>::BodyPointProbe(const ProbeDescription<dim> &description,
                                     MPI_Comm                     communicator)
   : prefix(description.prefix()), comm(communicator)
 {
-  using namespace dealii::Utilities::MPI;
   double nearest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < nodes.n_nodes; ++i)
     nearest = std::min(nearest, description.position.distance(entry<dim>(nodes.reference, i)));
-  found_distance = min(nearest, comm);
+  found_distance = mpi::min(nearest, comm);
 
   // Nodes at the same distance up to round-off: the lowest key decides, on any partition.
   const double  limit  = found_distance * (1 + 1e-9) + 1e-15 * description.position.norm();
@@ -133,7 +133,7 @@ BodyPointProbe<dim>::BodyPointProbe(const ProbeDescription<dim> &description,
   MPI_Allreduce(&lowest, &found_key, 1, MPI_UINT64_T, MPI_MIN, comm);
   if (lowest != found_key || lowest == std::numeric_limits<std::uint64_t>::max())
     local_node = -1;
-  AssertThrow(sum(local_node >= 0 ? 1 : 0, comm) == 1,
+  AssertThrow(mpi::sum(local_node >= 0 ? 1 : 0, comm) == 1,
               dealii::ExcMessage("The node of probe '" + prefix + "' must have one owner."));
 }
 

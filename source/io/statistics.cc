@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <coracle/base/exceptions.h>
 #include <coracle/io/disk.h>
 #include <coracle/io/statistics.h>
 #include <coracle/io/text.h>
+
+#include <filesystem>
 
 namespace coracle
 {
@@ -29,7 +32,7 @@ Statistics::Statistics(const std::string &file_name, MPI_Comm communicator)
 void
 Statistics::add_column(const std::string &name, const std::string &unit)
 {
-  AssertThrow(!header_written && !row_open,
+  AssertThrow(n_rows == 0 && !row_open,
               dealii::ExcMessage("Column '" + name + "' came after the first row."));
   AssertThrow(column_of_name.emplace(name, column_titles.size()).second,
               dealii::ExcMessage("There are two statistics columns '" + name + "'."));
@@ -75,16 +78,54 @@ Statistics::end_row()
                   dealii::ExcMessage("Statistics column '" + column_titles[c] + "' was not set."));
       line += (c > 0 ? "," : "") + exact_number(values[c]);
     }
-  if (!header_written)
-    {
-      std::string header;
-      for (unsigned int c = 0; c < column_titles.size(); ++c)
-        header += (c > 0 ? "," : "") + csv_text(column_titles[c]);
-      write_line(header);
-      header_written = true;
-    }
+  if (n_rows == 0)
+    write_line(header());
   write_line(line);
+  ++n_rows;
   row_open = false;
+}
+
+std::string
+Statistics::header() const
+{
+  std::string line;
+  for (unsigned int c = 0; c < column_titles.size(); ++c)
+    line += (c > 0 ? "," : "") + csv_text(column_titles[c]);
+  return line;
+}
+
+void
+Statistics::serialize(Archive &archive)
+{
+  archive.same("statistics.n_rows", n_rows);
+  if (!archive.loads() && file.is_open())
+    make_durable(file_name);
+  if (archive.loads() && writes && n_rows > 0)
+    go_on();
+}
+
+void
+Statistics::go_on()
+{
+  std::ifstream  old(file_name);
+  std::string    line;
+  std::uint64_t  n            = 0;
+  std::streamoff end          = 0;
+  const bool     same_columns = std::getline(old, line) && line == header();
+  for (; same_columns && n < n_rows && std::getline(old, line) && !old.eof(); ++n)
+    end = old.tellg();
+  if (n < n_rows)
+    throw RunFailure("results of the run that is to be continued are missing",
+                     file_name + (same_columns ? ": " + std::to_string(n) + " rows instead of " +
+                                                   std::to_string(n_rows)
+                                               : ": it does not exist, or has other columns"),
+                     "put the file back, or run the case from its start, without --restart");
+  old.close();
+  std::error_code error;
+  std::filesystem::resize_file(file_name, end, error);
+  if (error)
+    throw_not_written(file_name + ": " + error.message());
+  file.open(file_name, std::ios::app);
 }
 
 void

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exceptions.h>
 #include <coracle/io/verdict.h>
 
 #include <algorithm>
@@ -58,6 +59,15 @@ VerdictLimits::declare(Declaration &verdict_section)
                            "more than this share of the largest energy so far",
                            0);
   verdict_section.quantity(
+    "Energy error that ends the run",
+    "1e300",
+    "1",
+    "",
+    "A run ends with FAILED where energy appears or disappears, and no booking "
+    "explains it, by more than this share of the largest energy so far; looked "
+    "at in each row of statistics.csv and each progress line",
+    0);
+  verdict_section.quantity(
     "Unconverged contact limit",
     "0.01",
     "1",
@@ -74,8 +84,27 @@ VerdictLimits::read(const Parameters &verdict_section)
   VerdictLimits limits;
   limits.energy_gain       = verdict_section.quantity("Energy gain limit");
   limits.energy_loss       = verdict_section.quantity("Energy loss limit");
+  limits.energy_stop       = verdict_section.quantity("Energy error that ends the run");
   limits.unconverged_share = verdict_section.quantity("Unconverged contact limit");
   return limits;
+}
+
+template <int dim>
+void
+check_while_running(const Report<dim> &report, const VerdictLimits &limits)
+{
+  const std::string when =
+    "t = " + std::to_string(report.time) + " s, step " + std::to_string(report.step);
+  if (!is_finite(report))
+    throw RunFailure("a reported number is not finite",
+                     when,
+                     "see statistics.csv for which, and look at what happens before");
+  if (std::abs(report.energy_balance_error) > limits.energy_stop)
+    throw RunFailure("the energy balance is lost",
+                     percent(report.energy_balance_error) + " of the largest energy at " + when +
+                       " (limit " + percent(limits.energy_stop) + ")",
+                     "lower Time/Safety factor, or look at what gains or takes energy in "
+                     "statistics.csv");
 }
 
 template <int dim>
@@ -130,6 +159,8 @@ judge_broken_run(const std::string   &reason,
   return verdict;
 }
 
+template void    check_while_running(const Report<2> &, const VerdictLimits &);
+template void    check_while_running(const Report<3> &, const VerdictLimits &);
 template Verdict judge(const Report<2> &, const VerdictLimits &);
 template Verdict judge(const Report<3> &, const VerdictLimits &);
 template Verdict judge_broken_run(const std::string &, const Report<2> &, const VerdictLimits &);

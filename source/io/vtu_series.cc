@@ -17,6 +17,32 @@ VtuSeries::VtuSeries(const OutputDirectory &directory,
 {}
 
 void
+VtuSeries::serialize(Archive &archive)
+{
+  if (!archive.has(name + ".times"))
+    return;
+  std::vector<double>      times;
+  std::vector<std::string> files;
+  for (const auto &[time, file] : entries)
+    {
+      times.push_back(time);
+      files.push_back(file);
+    }
+  archive.same(name + ".times", times);
+  archive.same(name + ".files", files);
+  entries.clear();
+  for (unsigned int i = 0; i < times.size(); ++i)
+    entries.emplace_back(times[i], files[i]);
+  if (archive.loads() && !entries.empty())
+    mpi::agree(
+      [&] {
+        if (mpi::rank(comm) == 0)
+          write_file(folder + "/" + name + ".pvd", pvd_text(entries));
+      },
+      comm);
+}
+
+void
 VtuSeries::write(const double time, const VtuPiece &piece)
 {
   const unsigned int rank = mpi::rank(comm), n_ranks = mpi::n_ranks(comm);

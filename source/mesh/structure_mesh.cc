@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/affine_constraints.h>
@@ -28,18 +29,26 @@ outward_faces()
              {{4, 5, 7, 6}}}};
 }
 
-/// Coarse cell, path through the refinement tree (a leading 1, then three bits a level), face.
+/// Coarse cell, path through the refinement tree (a leading 1, then three bits a level).
+template <typename Cell>
+std::uint64_t
+element_key(const Cell &cell)
+{
+  constexpr unsigned int path_bits = 3 * 11 + 1;
+  const dealii::CellId   id        = cell->id();
+  std::uint64_t          path      = 1;
+  for (const auto child : id.get_child_indices())
+    path = 8 * path + static_cast<unsigned int>(child);
+  const std::uint64_t coarse = id.get_coarse_cell_id();
+  return (coarse << path_bits) + path;
+}
+
 template <typename Cell>
 std::uint64_t
 facet_key(const Cell &cell, const unsigned int face)
 {
-  constexpr unsigned int path_bits = 3 * 11 + 1, face_bits = 3;
-  const dealii::CellId   id   = cell->id();
-  std::uint64_t          path = 1;
-  for (const auto child : id.get_child_indices())
-    path = 8 * path + static_cast<unsigned int>(child);
-  const std::uint64_t coarse = id.get_coarse_cell_id();
-  return (((coarse << path_bits) + path) << face_bits) + face;
+  constexpr unsigned int face_bits = 3;
+  return (element_key(cell) << face_bits) + face;
 }
 
 } // namespace
@@ -107,6 +116,8 @@ void
 StructureMesh<dim>::number_nodes()
 {
   dof_handler.distribute_dofs(fe);
+  // Along the curve of the forest, so that numbers do not depend on the ranks.
+  dealii::DoFRenumbering::hierarchical(dof_handler);
   const dealii::IndexSet owned = dof_handler.locally_owned_dofs();
   dealii::IndexSet       needed, relevant;
   dealii::DoFTools::extract_locally_active_dofs(dof_handler, needed);
@@ -150,6 +161,7 @@ StructureMesh<dim>::number_elements()
   elements.clear();
   this->facets.clear();
   active_cell_index.clear();
+  element_keys.clear();
 
   std::vector<dealii::types::global_dof_index> cell_nodes(nodes_per_element);
   for (const auto &cell : dof_handler.active_cell_iterators())
@@ -164,6 +176,7 @@ StructureMesh<dim>::number_elements()
               positions[d][element[v]] = cell->vertex(v)[d];
           }
         active_cell_index.push_back(cell->active_cell_index());
+        element_keys.push_back(element_key(cell));
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary())
             {

@@ -73,6 +73,39 @@ MaterialPoints<dim>::remove(const std::size_t row)
 }
 
 template <int dim>
+void
+MaterialPoints<dim>::clear()
+{
+  columns.resize(0);
+  begins.assign(1, 0);
+  occupied.clear();
+  strays.clear();
+  n_holes = 0;
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::serialize(Archive &archive)
+{
+  archive.rows("rows", columns);
+  archive.own("n_holes", n_holes);
+  archive.own("cell_begin", begins);
+  archive.own("occupied_cells", occupied);
+  archive.own("strays", strays);
+  archive.share("created", ledger.created);
+  archive.share("removed", ledger.removed);
+  archive.share("converted", ledger.converted);
+  archive.share("split", ledger.split);
+  archive.share("merged", ledger.merged);
+  if (archive.is_exact())
+    return;
+  begins.assign(1, 0);
+  occupied.clear();
+  strays.clear();
+  n_holes = std::count(columns[Layout::mass], columns[Layout::mass] + columns.size(), 0.);
+}
+
+template <int dim>
 double
 MaterialPoints<dim>::kinetic_energy() const
 {

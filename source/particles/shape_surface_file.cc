@@ -5,6 +5,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -103,11 +104,10 @@ read_mesh(const std::string &file_name)
       }
   return facets;
 }
-} // namespace
 
 template <int dim>
 FacetSoup<dim>
-read_facets(const std::string &file_name)
+read_any(const std::string &file_name)
 {
   const std::string suffix = suffix_of(file_name);
   if (suffix == ".stl" || suffix == ".STL")
@@ -119,7 +119,20 @@ read_facets(const std::string &file_name)
     }
   return read_mesh<dim>(file_name);
 }
+} // namespace
 
+template <int dim>
+FacetSoup<dim>
+read_facets(const std::string &file_name)
+{
+  const auto facets = read_any<dim>(file_name);
+  for (const auto &facet : facets)
+    for (const auto &vertex : facet)
+      for (int d = 0; d < dim; ++d)
+        if (!std::isfinite(vertex[d]))
+          throw std::runtime_error("a coordinate is not a finite number");
+  return facets;
+}
 template FacetSoup<2> read_facets<2>(const std::string &);
 template FacetSoup<3> read_facets<3>(const std::string &);
 } // namespace coracle

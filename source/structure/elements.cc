@@ -184,20 +184,24 @@ Elements<dim>::report_failure(const Columns &nodes) const
   for (unsigned int e = 0; e < n_elements; ++e)
     {
       NodalVectors<dim, double> x;
-      dealii::Point<dim>        centre;
+      dealii::Point<dim>        centre, reference;
       for (int n = 0; n < n_nodes; ++n)
         for (int d = 0; d < dim; ++d)
           {
             x[d][n] = nodes[NodeColumns<dim>::position + d][data.node(e, n)];
             centre[d] += x[d][n] / n_nodes;
+            reference[d] += nodes[NodeColumns<dim>::reference + d][data.node(e, n)] / n_nodes;
           }
-      if (is_turned_out<dim>(x) || !std::isfinite(stress(e).trace()))
+      const bool is_place = std::isfinite(centre.norm_square());
+      if (!is_place || is_turned_out<dim>(x) || !std::isfinite(stress(e).trace()))
         {
           std::ostringstream what;
           what << "element " << e << " of " << n_elements << " on this rank, at (" << centre
-               << ") m";
+               << ") m, unloaded at (" << reference << ") m";
           throw RunFailure(
-            is_turned_out<dim>(x) ? "element turned inside out" : "stress that is not a number",
+            !is_place               ? "place of a node that is not a number"
+            : is_turned_out<dim>(x) ? "element turned inside out"
+                                    : "stress that is not a number",
             what.str(),
             "use smaller time steps, smaller or better shaped elements, or a stiffer material");
         }
@@ -223,6 +227,20 @@ double
 Elements<dim>::hourglass_energy() const
 {
   return std::accumulate(data.columns[Data::energy], data.columns[Data::energy] + n_elements, 0.);
+}
+
+template <int dim>
+void
+Elements<dim>::serialize(Archive &archive, const std::vector<std::uint64_t> &keys)
+{
+  archive.keyed("elements", keys, n_elements, data.columns, {});
+  archive.smallest("stable_step", stable_step);
+  std::vector<double> last(data.columns.n_columns());
+  for (unsigned int i = n_elements; i < data.columns.size(); ++i)
+    {
+      data.columns.get_row(n_elements - 1, last.data());
+      data.columns.set_row(i, last.data());
+    }
 }
 
 template class Elements<2>;

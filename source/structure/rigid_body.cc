@@ -5,6 +5,8 @@
 #include <coracle/structure/rigid_body.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <vector>
 
 namespace coracle
@@ -221,6 +223,20 @@ RigidBody<dim>::move(const double dt)
 
 template <int dim>
 void
+RigidBody<dim>::update_stress(const double)
+{
+  if (std::isfinite(body_centre.norm_square() + body_velocity.norm_square() + spin().norm_square()))
+    return;
+  std::ostringstream details;
+  details << "t = " << time + last_dt << " s, centre at (" << body_centre << ") m, velocity ("
+          << body_velocity << ") m/s, spin (" << spin() << ") rad/s";
+  throw RunFailure("the motion of a rigid body is not a number",
+                   details.str(),
+                   "look at functions that move it, and at what it meets");
+}
+
+template <int dim>
+void
 RigidBody<dim>::set_node_velocities()
 {
   const Vector3 now = spin();
@@ -268,6 +284,23 @@ BodySummary<dim>
 RigidBody<dim>::summary() const
 {
   return {body_mass, body_centre, body_velocity, last_force, last_moment, spin()};
+}
+
+template <int dim>
+void
+RigidBody<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "body " + this->name());
+  this->serialize_nodes(archive, {});
+  archive.same("centre", body_centre);
+  archive.same("velocity", body_velocity);
+  rotation.serialize(archive);
+  archive.same("last_force", last_force);
+  archive.same("last_moment", last_moment);
+  archive.same("time", time);
+  archive.same("last_dt", last_dt);
+  archive.same("external_work", external_work);
+  archive.same("contact_work", contact_work);
 }
 
 template class RigidBody<2>;

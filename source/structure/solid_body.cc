@@ -375,6 +375,19 @@ SolidBody<dim>::summary() const
   return result;
 }
 
+template <int dim>
+void
+SolidBody<dim>::serialize(Archive &archive)
+{
+  const Archive::Section section(archive, "body " + this->name());
+  this->serialize_nodes(archive, {Node::internal, dim});
+  elements.serialize(archive, mesh().element_keys);
+  archive.same("time", time);
+  archive.same("last_dt", last_dt);
+  archive.same("kick_duration", kick_duration);
+  books.serialize(archive);
+}
+
 template class SolidBody<2>;
 template class SolidBody<3>;
 } // namespace coracle

@@ -42,6 +42,16 @@ StructuralBody<dim>::StructuralBody(const Parameters                    &body,
                          nodes_on_surface.end());
 }
 
+template <int dim>
+void
+StructuralBody<dim>::serialize_nodes(Archive &archive, const Archive::Summed &summed)
+{
+  std::vector<std::uint64_t> keys;
+  for (unsigned int n = 0; n < body_mesh->n_nodes(); ++n)
+    keys.push_back(body_mesh->key(n));
+  archive.keyed("nodes", keys, body_mesh->n_owned_nodes(), node_columns, summed);
+}
+
 template class StructuralBody<2>;
 template class StructuralBody<3>;
 } // namespace coracle

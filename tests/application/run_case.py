@@ -15,6 +15,7 @@ import bisect
 import csv
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -50,17 +51,30 @@ class Test:
         self.n_runs = 0
         self.failures = 0
 
-    def run(self, case, values=None, ranks=1, options=(), exit_code=0):
-        """Run prm/<case> with some entries set; fails where the exit code is another (None: any)."""
+    def new_directory(self, case):
+        """A folder that no run has written to."""
         self.n_runs += 1
         directory = pathlib.Path.cwd() / f"{pathlib.Path(case).stem}.{self.n_runs}"
+        shutil.rmtree(directory, ignore_errors=True)
+        return directory
+
+    @staticmethod
+    def command(case, directory, values=None, ranks=1, options=()):
+        """How to run prm/<case> (or a case with an absolute path) into a folder."""
         command = [os.environ["CORACLE"]]
         if ranks > 1:
             command = [*os.environ["CORACLE_MPIEXEC"].split(), str(ranks), *command]
         command += [str(pathlib.Path(os.environ["CORACLE_TOP"]) / "prm" / case), *options]
         for name, value in {"Output/Directory": directory, **(values or {})}.items():
             command += ["--set", f"{name}={value}"]
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        return command
+
+    def run(self, case, values=None, ranks=1, options=(), exit_code=0, directory=None, **process):
+        """Run prm/<case> with some entries set; fails where the exit code is another (None: any)."""
+        directory = directory or self.new_directory(case)
+        command = self.command(case, directory, values, ranks, options)
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              **process)
         what = f"{case} {' '.join(options)} on {ranks} ranks ends with {exit_code}"
         if not self.check(what, exit_code in (None, done.returncode)):
             print(f"it ended with {done.returncode} and said:\n{done.stdout}")

@@ -96,6 +96,11 @@ test_refused()
   refused("setDimension = 2");
   refused("subsection a/b\nend");
   refused("include no_such_file.prm");
+  refused("include /dev/zero");
+  std::string deep;
+  for (unsigned int i = 0; i < 40; ++i)
+    deep += "subsection s\n";
+  refused(deep);
   refused("", {"Output/Directroy=a"});
   refused(body + "end\nend", {"Bodies/bb/Mass=2 kg"});
   refused("", {"Dimension"});

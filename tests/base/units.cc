@@ -92,6 +92,8 @@ main()
   refused("5 (m", "m");
   refused("5 m)", "m");
   refused("5 m/", "m");
+  refused("5 ((m^12)^12)^12", "m");
+  refused("5 " + std::string(17, '(') + "m", "m");
   refused("1 mm, 2, 3 mm", "m");
   refused("1 mm, 2 kg", "m");
 }

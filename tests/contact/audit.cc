@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The penetration audit counts what a sub-stepping oracle counts, for random
 // steps of points and moving, deforming bodies; paths through edges and vertices
-// count once, and points that start exactly on the surface are not overlooked.
+// count once, also where these are saddles; points that rest on the surface for
+// some steps are counted when they go in, once, and not when they leave.
 
 #include <coracle/contact/audit.h>
 
@@ -153,19 +154,19 @@ random_steps(const unsigned int n, const unsigned int n_substeps)
           << ", missed " << fewer << ", inward not half of all " << wrong_inward << std::endl;
 }
 
+/// The polytope with vertices at these distances on the axes, as triangles (2-D: segments), at
+/// rest.
 template <int dim>
-void
-special_paths()
+Surface<dim>
+star(const std::array<double, 2 * dim> &radii)
 {
-  // The cross polytope |x| + |y| + |z| <= 1 as triangles (2-D: segments), at rest.
   auto s = one_body<dim>(SurfaceKind::closed);
-  for (int d = 0; d < dim; ++d)
-    for (const double sign : {1., -1.})
-      {
-        dealii::Point<dim> x;
-        x[d] = sign;
-        add_node<dim>(s, x);
-      }
+  for (int i = 0; i < 2 * dim; ++i)
+    {
+      dealii::Point<dim> x;
+      x[i / 2] = (i % 2 == 0 ? 1 : -1) * radii[i];
+      add_node<dim>(s, x);
+    }
   if constexpr (dim == 2)
     for (const auto &f : {std::array<unsigned int, 2>{{0, 2}}, {{2, 1}}, {{1, 3}}, {{3, 0}}})
       add_facet<2>(s, f);
@@ -176,28 +177,53 @@ special_paths()
         const bool         even = (a + b + c) % 2 == 0;
         add_facet<3>(s, {{a, even ? b : c, even ? c : b, even ? c : b}});
       }
+  return s;
+}
+
+/// Through vertices, edges and faces towards the centre, and out of it; from exactly on the
+/// surface.
+template <int dim>
+unsigned int
+n_wrong_radial_paths(Surface<dim> &s)
+{
   unsigned int wrong = 0;
-  // Through vertices, edges and faces towards the centre, and out of it; from exactly on the
-  // surface.
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j)
       for (int k = (dim == 3 ? -1 : 0); k <= (dim == 3 ? 1 : 0); ++k)
         {
-          dealii::Point<dim> x;
-          x[0] = i;
-          x[1] = j;
-          if (dim == 3)
-            x[dim - 1] = k;
-          const double size = std::abs(i) + std::abs(j) + std::abs(k);
-          if (size == 0)
+          const int          along[] = {i, j, k};
+          const double       n       = std::abs(i) + std::abs(j) + std::abs(k);
+          dealii::Point<dim> on;
+          for (int d = 0; d < dim; ++d)
+            if (along[d] != 0)
+              on += s.nodes[2 * d + (along[d] < 0)].position / n;
+          if (n == 0)
             continue;
-          const dealii::Point<dim> on(x / size), in(0.3 * on), out(1.7 * on);
+          const dealii::Point<dim> in(0.3 * on), out(1.7 * on);
           wrong += (count<dim>(s, {}, out, in) != 1);
           wrong += (count<dim>(s, {}, on, in) != 1);
           wrong += (count<dim>(s, {}, on, out) != 0);
           wrong += (count<dim>(s, {}, out, on) != 0);
           wrong += (count<dim>(s, {}, in, out) != 0);
         }
+  return wrong;
+}
+
+template <int dim>
+void
+special_paths()
+{
+  std::array<double, 2 * dim> radii;
+  radii.fill(1);
+  auto         s     = star<dim>(radii);
+  unsigned int wrong = n_wrong_radial_paths<dim>(s), wrong_at_stars = 0;
+  for (unsigned int i = 0; i < 2000; ++i)
+    {
+      for (double &r : radii)
+        r = std::pow(10., 0.5 * (uniform(generator) - 1));
+      auto body = star<dim>(radii);
+      wrong_at_stars += n_wrong_radial_paths<dim>(body);
+    }
   // Touching a vertex from outside.
   dealii::Point<dim> a, b;
   a[0] = b[0] = 1;
@@ -217,7 +243,106 @@ special_paths()
   wrong += (count<dim>(s, {}, on, in, 1) != 1) + (count<dim>(s, {}, on, out, 1) != 0) +
            (count<dim>(s, {}, on, out, -1) != 1) + (count<dim>(s, {}, on, in, -1) != 0) +
            (count<dim>(s, {}, on, in, 0) != 1) + (count<dim>(s, {}, on, out, 0) != 1);
-  deallog << dim << "-D special paths: wrong " << wrong << std::endl;
+  deallog << dim << "-D special paths: wrong " << wrong << ", at stars with saddles "
+          << wrong_at_stars << std::endl;
+}
+
+/// A simplex that deforms from step to step, and a point.
+template <int dim>
+struct RestingPoint
+{
+  std::array<dealii::Point<dim>, dim + 1> x;
+  Surface<dim>                            surface;
+  /// Of the vertices in the point's place; the last has none.
+  std::array<double, dim> weight;
+  dealii::Point<dim>      now;
+
+  RestingPoint()
+  {
+    do
+      for (auto &v : x)
+        v = random_point<dim>(1);
+    while (volume<dim>(x) < 0.05);
+    surface    = simplex_body<dim>(x, SurfaceKind::closed);
+    double sum = 0;
+    for (double &w : weight)
+      sum += w = std::max(0., uniform(generator));
+    for (double &w : weight)
+      w = (sum > 0 ? w / sum : 1. / dim);
+    now = place(1);
+  }
+
+  dealii::Point<dim> middle() const
+  {
+    dealii::Point<dim> m;
+    for (const auto &v : x)
+      m += v / (dim + 1);
+    return m;
+  }
+
+  double shortest_edge() const
+  {
+    double length = 10;
+    for (const auto &a : x)
+      for (const auto &b : x)
+        if (&a != &b)
+          length = std::min(length, a.distance(b));
+    return length;
+  }
+
+  /// On the surface, and off it by a share of the distance from the middle.
+  dealii::Point<dim> place(const double height) const
+  {
+    dealii::Point<dim> on;
+    for (int k = 0; k < dim; ++k)
+      on += weight[k] * x[k];
+    return on + height * (on - middle());
+  }
+
+  void deform()
+  {
+    auto moved = x;
+    for (auto &v : moved)
+      v += random_point<dim>(0.02);
+    if (volume<dim>(moved) > 0.05)
+      x = moved;
+  }
+
+  /// Crossings of the step to where body and point are next.
+  unsigned int go(const dealii::Point<dim> &next)
+  {
+    const unsigned int found =
+      count<dim>(surface, std::vector<dealii::Point<dim>>(x.begin(), x.end()), now, next);
+    now = next;
+    return found;
+  }
+};
+
+/// A point stays with a face, edge or vertex of a body, up to 1e-9 of its shortest edge off and
+/// within it, and then goes to the middle or away.
+template <int dim>
+void
+rest_on_surface(const unsigned int n)
+{
+  unsigned int wrong_in = 0, wrong_out = 0, early = 0;
+  for (unsigned int i = 0; i < n; ++i)
+    {
+      RestingPoint<dim> point;
+      for (unsigned int k = 0; k < 4; ++k)
+        {
+          const double height = 0.5e-9 * point.shortest_edge() * uniform(generator);
+          early += point.go(point.place(k == 1 ? 0 : height));
+          // Of a body at rest that is convex, it is clear how often a straight path goes in.
+          if (k < 3)
+            point.deform();
+        }
+      if (i % 2 == 0)
+        wrong_in += (point.go(point.middle()) != 1);
+      else
+        wrong_out += (point.go(point.place(1)) != 0);
+    }
+  deallog << dim << "-D points that rest on the surface: counted then " << early
+          << ", wrong when they go in " << wrong_in << ", away " << wrong_out << std::endl;
 }
 
 int
@@ -228,4 +353,6 @@ main()
   random_steps<3>(1000000, 20);
   special_paths<2>();
   special_paths<3>();
+  rest_on_surface<2>(50000);
+  rest_on_surface<3>(50000);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Particles that wander at random stay whole, are on the rank that owns their leaf, and are all
-// accounted for; those that leave are counted at an open face and named at a closed one.
+// accounted for; those that leave are counted at an open face and named at a closed one. Rows
+// handed to the wrong ranks find back.
 #include <coracle/base/exceptions.h>
 
 #include "grid/scene.h"
@@ -68,6 +69,28 @@ ledger_closes(const MaterialPoints<dim> &points)
   return mpi::sum(open, comm) == 0;
 }
 
+// All rows go to the next rank, whether they belong there or not, and back to their owners.
+template <int dim>
+bool
+find_back(const Scene<dim> &scene, const double margin, MaterialPoints<dim> &points)
+{
+  const unsigned int width = points.columns.n_columns(), n_ranks = mpi::n_ranks(comm);
+  std::map<unsigned int, std::vector<double>> to_send;
+  std::vector<double>                         values(width);
+  for (std::size_t row = 0; row < points.n_rows(); ++row)
+    {
+      points.columns.get_row(row, values.data());
+      auto &rows = to_send[(mpi::rank(comm) + 1) % n_ranks];
+      rows.insert(rows.end(), values.begin(), values.end());
+    }
+  points.clear();
+  for (const auto &[rank, rows] : mpi::exchange_values(to_send, comm))
+    for (std::size_t first = 0; first < rows.size(); first += width)
+      points.append(rows.data() + first);
+  redistribute(scene.octree, margin, points);
+  return is_consistent(scene, margin, points) && ledger_closes(points);
+}
+
 template <int dim>
 void
 test_walk(const OctreeDescription<dim> &description, const double margin)
@@ -106,6 +129,8 @@ test_walk(const OctreeDescription<dim> &description, const double margin)
           sorted_strays += points.strays.size();
         }
     }
+  sort_by_leaf(scene.octree, margin, points);
+  good = find_back(scene, margin, points) && good;
   const auto ids =
     sum_over_particles(points, [&](const std::size_t row) { return double(points.id(row)); });
   const auto square = sum_over_particles(points, [&](const std::size_t row) {

@@ -29,9 +29,9 @@ public:
   /// For everything that is not a warning.
   std::ostream &out() { return stream; }
 
-  /// Rank 0 goes on in this file, which is replaced. A UserError (on rank 0) if it cannot be
-  /// written.
-  void open(const std::string &file_name);
+  /// Rank 0 goes on in this file, which is replaced, or gets longer. A UserError (on rank 0) if it
+  /// cannot be written.
+  void open(const std::string &file_name, const bool append = false);
 
   /// Not collective.
   void warning(const std::string &kind, const std::string &details);
@@ -63,7 +63,7 @@ private:
   {
   public:
     explicit Tee(std::streambuf *console);
-    void open(const std::string &file_name);
+    void open(const std::string &file_name, const bool append);
 
   protected:
     int overflow(int character) override;

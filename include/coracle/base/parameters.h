@@ -121,6 +121,21 @@ public:
   /// "Bodies/water"
   std::string path() const;
 
+  /// One entry of this section or of those below, as used.
+  struct Entry
+  {
+    /// "Bodies/water/Particle spacing"; for sections with names of the user's the path of their
+    /// parent, with their names as the text.
+    std::string path;
+    std::string text;
+    /// In SI; none for texts and functions.
+    std::vector<double> numbers;
+    /// "case.prm, line 5, Bodies/water/Particle spacing"
+    std::string where;
+  };
+  /// All of them, by path.
+  std::vector<Entry> entries() const;
+
   /// A UserError that names file, line and entry ("" for the whole section); for `throw
   /// section.error(...)`.
   UserError error(const std::string &entry,
@@ -145,6 +160,10 @@ class ParameterFile
 public:
   explicit ParameterFile(const Declaration &declaration);
   ~ParameterFile();
+  ParameterFile(ParameterFile &&);
+
+  /// A file with the same declaration, nothing read.
+  ParameterFile empty_copy() const;
 
   /// Reads the file on rank 0 and hands its text to all ranks.
   void read(const std::string &file_name);
@@ -162,6 +181,8 @@ public:
   std::string print_markdown() const;
 
 private:
+  ParameterFile();
+
   struct Data;
   std::unique_ptr<Data> data;
 };

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
+#include <coracle/contact/audit_path.h>
 #include <coracle/contact/global_search.h>
 
 namespace coracle::contact
 {
-struct PathEvent;
-
 /// A point that went through a facet.
 template <int dim>
 struct Crossing
@@ -33,12 +33,10 @@ struct Crossing
  *
  * Where the path meets a facet's moving plane is a root of a quadratic (2-D) or
  * cubic (3-D) in time. A closed body is crossed from outside only, a sheet both
- * ways. A point nearer than 1e-9 of the facet's size at an end of the step is
+ * ways. A point nearer than 4e-9 of the facet's size at an end of the step is
  * still on the side that it belongs to: one that starts exactly on the surface
- * and goes in is counted, one that ends on it is not until it goes on. It is
- * thought moved off the facets it starts on by ten times that. Facets
- * that meet at the edge or vertex where a path goes through report it at the same
- * time and count once; opposite ways cancel (the path only touches).
+ * and goes in is counted, one that ends on it is not until it goes on. How edges
+ * and vertices are met says PathAudit; what counts, section "Audit" of doc/theory.md.
  */
 template <int dim>
 class Audit
@@ -61,6 +59,9 @@ public:
   /// Of the last step, on this rank.
   const std::vector<Crossing<dim>> &crossings() const { return last; }
 
+  /// How many there were; the first ones are forgotten.
+  void serialize(Archive &archive) { archive.share("n_crossings", total); }
+
   static constexpr unsigned int n_kept = 5;
 
 private:
@@ -69,57 +70,18 @@ private:
   {
     const unsigned int *facet;
     std::size_t         begin, end;
-    /// That the point belongs to.
-    int side;
   };
-  void meet_body(const Surface<dim>                      &surface,
-                 const unsigned int                       body,
-                 const std::array<dealii::Point<dim>, 2> &p,
-                 const CandidateRange                    &range,
-                 std::vector<PathEvent>                  &events) const;
+  void
+  add_facets(const Surface<dim> &surface, const unsigned int body, const CandidateRange &range);
   /// -1, +1, or 0 where the point may belong to either.
   static int
   side_of(const SurfaceBody &body, const PointSet<dim> &points, const unsigned int point);
 
+  PathAudit<dim>                               path_audit;
   std::vector<dealii::Point<dim>>              nodes;
   std::vector<std::vector<dealii::Point<dim>>> starts;
   std::vector<const Candidates *>              candidates;
   std::vector<Crossing<dim>>                   first, last;
   unsigned long                                total = 0;
 };
-
-/// One meeting of a path with a facet.
-struct PathEvent
-{
-  double time;
-  /// +1: from the side of the normal to the other; -1: the other way.
-  int          direction;
-  unsigned int facet;
-};
-
-/// What becomes of a point that starts or ends on the surface.
-struct OnSurface
-{
-  /// That it belongs to, -1, +1 or 0; and how near to the plane is on it [m].
-  int    side;
-  double distance;
-};
-
-/// Unit normal of the simplex if the point is on it, nearer than `distance`; else 0.
-template <int dim>
-dealii::Tensor<1, dim> normal_if_on(const dealii::Point<dim>                  &p,
-                                    const std::array<dealii::Point<dim>, dim> &x,
-                                    const double                               distance);
-
-/**
- * Meetings of a point that moves straight from p[0] to p[1] with a simplex
- * (segment, triangle) whose vertices move straight from x[0] to x[1].
- * Appends to `events`.
- */
-template <int dim>
-void meet_simplex(const std::array<dealii::Point<dim>, 2>                  &p,
-                  const std::array<std::array<dealii::Point<dim>, dim>, 2> &x,
-                  const OnSurface                                          &on_surface,
-                  const unsigned int                                        facet,
-                  std::vector<PathEvent>                                   &events);
 } // namespace coracle::contact

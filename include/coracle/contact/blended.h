@@ -24,6 +24,6 @@ IterationReport solve_blended(Delassus<dim>                       &delassus,
                               const std::vector<bool>             &active,
                               const IterationLimits               &limits,
                               std::vector<dealii::Tensor<1, dim>> &impulses,
-                              Velocities<dim>                     &v,
+                              LaneVelocities<dim>                 &v,
                               MPI_Comm                             communicator);
 } // namespace coracle::contact

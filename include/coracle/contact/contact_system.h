@@ -31,6 +31,23 @@ struct ContactReport
   /// keeps.
   unsigned int  n_rebuilds   = 0;
   unsigned long n_candidates = 0;
+
+  void serialize(Archive &archive)
+  {
+    archive.same("n_contacts", n_contacts);
+    archive.same("worst_gap", worst_gap);
+    archive.same("work", work);
+    archive.same("energy_fed", energy_fed);
+    archive.same("n_penetrations", n_penetrations);
+    archive.same("n_resolved", n_resolved);
+    archive.same("n_failed", n_failed);
+    archive.share("n_held", n_held);
+    archive.same("largest_shift", largest_shift);
+    archive.same("n_rebuilds", n_rebuilds);
+    archive.share("n_candidates", n_candidates);
+    const Archive::Section section(archive, "solver");
+    solver.serialize(archive);
+  }
 };
 
 /**
@@ -148,6 +165,10 @@ public:
 
   const ContactReport &report() const { return statistics; }
 
+  /// Between steps. Candidates go on as they are, because what is found depends on them in the last
+  /// digits; other ranks look for theirs at the next find().
+  void serialize(Archive &archive);
+
 private:
   /// Greatest speeds, radius and movement since the last search, over all ranks.
   struct Extremes
@@ -179,7 +200,9 @@ private:
 
   bool changed = true;
   /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].
-  double                          reach = 0, used = 0, used_before = 0;
+  double reach = 0, used = 0, used_before = 0;
+  /// Steps since points or facets were last renumbered, and between the last two times; 0: unknown.
+  unsigned int                    steps_since_change = 0, change_interval = 0;
   std::vector<dealii::Point<dim>> positions_at_search;
 
   std::vector<Contact<dim>>                 list;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/contact/contact.h>
+#include <coracle/contact/lanes.h>
 #include <coracle/contact/rows.h>
 #include <coracle/contact/shared_unknowns.h>
 
@@ -9,9 +10,9 @@ namespace coracle::contact
 {
 /// Velocities of all unknowns that contacts act on, or changes of them.
 template <int dim>
-struct Velocities
+struct LaneVelocities
 {
-  std::vector<dealii::Tensor<1, dim>> nodes;
+  std::vector<Lanes<dim>>             nodes;
   std::vector<dealii::Tensor<1, dim>> rigid;
   std::vector<dealii::Tensor<1, 3>>   spin;
 };
@@ -34,26 +35,37 @@ class Delassus
 public:
   using Vector = dealii::Tensor<1, dim>;
 
-  /// One contact; entries of both sides in a row, those of the facet with negative weight.
+  /// One contact: what every sweep reads, a cache line. Entries of both sides are in a row, those
+  /// of the facet with negative weight.
   struct Row
   {
-    std::size_t begin, end;
-    /// Of each side, or -1.
-    std::array<int, 2> rigid_body;
-    Vector             normal;
-    /// From the centre of each side's rigid body to the point [m].
-    std::array<Vector, 2> arm;
-    /// Change of u by a unit normal impulse [1/kg], its normal part, and a bound of the tangential
-    /// block.
-    Vector normal_response;
-    double normal_inverse_mass;
-    double tangential_inverse_mass;
-    /// The same with the true masses, as if no other rank touched the unknowns [1/kg].
-    double true_inverse_mass;
-    double true_tangential_inverse_mass;
-    double friction;
+    Lanes<dim> normal;
+    /// Normal part of the change of u by a unit normal impulse [1/kg], and one over it.
+    double         normal_inverse_mass;
+    double         normal_mass;
+    unsigned int   begin;
+    unsigned short n_entries;
     /// Both sides are prescribed: no impulse can change anything.
     bool fixed;
+    bool has_friction;
+    /// Of each side, or -1.
+    std::array<int, 2> rigid_body;
+  };
+
+  /// What friction needs of a contact besides.
+  struct Sliding
+  {
+    /// Change of u by a unit normal impulse [1/kg].
+    Lanes<dim> normal_response;
+    /// A bound of the tangential block [1/kg].
+    double tangential_inverse_mass;
+    double friction;
+  };
+
+  /// Inverse masses of a contact as if no other rank touched the unknowns [1/kg].
+  struct TrueMasses
+  {
+    double normal, tangential;
   };
 
   explicit Delassus(MPI_Comm communicator);
@@ -65,40 +77,50 @@ public:
               const std::vector<RigidUnknown<dim>> &rigid);
 
   const std::vector<Row> &rows() const { return list; }
+  /// Of each contact.
+  const Sliding &sliding(const std::size_t contact) const { return slidings[contact]; }
+  const std::vector<TrueMasses> &true_inverse_masses() const { return true_masses; }
 
   /// u = J v of one contact [m/s].
-  Vector relative_velocity(const Row &row, const Velocities<dim> &v) const
+  Lanes<dim> relative_velocity(const Row &row, const LaneVelocities<dim> &v) const
   {
-    Vector u;
-    for (std::size_t e = row.begin; e < row.end; ++e)
-      u += entries[e].weight * v.nodes[entries[e].unknown];
+    // Four sums, so that additions need not wait for each other.
+    Lanes<dim>                sum[4] = {};
+    const unsigned int *const i      = entry_unknown.data() + row.begin;
+    const double *const       weight = entry_weight.data() + row.begin;
+    const unsigned int        whole  = row.n_entries & ~3u;
+    for (unsigned int e = 0; e < whole; e += 4)
+      for (unsigned int k = 0; k < 4; ++k)
+        sum[k] += weight[e + k] * v.nodes[i[e + k]];
+    for (unsigned int e = whole; e < row.n_entries; ++e)
+      sum[0] += weight[e] * v.nodes[i[e]];
+    Lanes<dim> u = (sum[0] + sum[1]) + (sum[2] + sum[3]);
     for (unsigned int side = 0; side < 2; ++side)
       if (const int b = row.rigid_body[side]; b >= 0)
-        u += sign(side) * (v.rigid[b] + cross(v.spin[b], row.arm[side]));
+        u += to_lanes<dim>(sign(side) *
+                           (v.rigid[b] + cross(v.spin[b], arms[&row - list.data()][side])));
     return u;
   }
 
   /// v += M^-1 J^T P for the impulse P [N s] of one contact.
-  void apply(const Row &row, const Vector &impulse, Velocities<dim> &v) const
+  void apply(const Row &row, const Lanes<dim> &impulse, LaneVelocities<dim> &v) const
   {
-    for (std::size_t e = row.begin; e < row.end; ++e)
-      {
-        const unsigned int i = entries[e].unknown;
-        for (int d = 0; d < dim; ++d)
-          v.nodes[i][d] += entries[e].weight * inverse_mass[i][d] * impulse[d];
-      }
+    const unsigned int *const i      = entry_unknown.data() + row.begin;
+    const double *const       weight = entry_weight.data() + row.begin;
+    for (unsigned int e = 0; e < row.n_entries; ++e)
+      v.nodes[i[e]] += (weight[e] * impulse) * inverse_mass[i[e]];
     for (unsigned int side = 0; side < 2; ++side)
       if (row.rigid_body[side] >= 0)
-        apply_rigid(row, side, impulse, v);
+        apply_rigid(row, side, to_tensor<dim>(impulse), v);
   }
 
   /// Collective. Shared velocities change by what all ranks have done to them since `before`;
   /// `scalar` is summed over the ranks on the same occasion.
-  void synchronise(Velocities<dim> &v, const Velocities<dim> &before, double &scalar);
+  void synchronise(LaneVelocities<dim> &v, const LaneVelocities<dim> &before, double &scalar);
 
   /// The predicted velocities; and zeros of the same shape.
-  Velocities<dim> predicted;
-  void            set_zero(Velocities<dim> &v) const;
+  LaneVelocities<dim> predicted;
+  void                set_zero(LaneVelocities<dim> &v) const;
 
   /// omega x r; in 2-D the spin is about z.
   static Vector cross(const dealii::Tensor<1, 3> &spin, const Vector &arm);
@@ -108,25 +130,31 @@ public:
 private:
   /// An impulse acts on the point, and the opposite on the facet.
   static constexpr double sign(const unsigned int side) { return side == 0 ? 1. : -1.; }
-  void                    apply_rigid(const Row         &row,
-                                      const unsigned int side,
-                                      const Vector      &impulse,
-                                      Velocities<dim>   &v) const;
+  void                    apply_rigid(const Row           &row,
+                                      const unsigned int   side,
+                                      const Vector        &impulse,
+                                      LaneVelocities<dim> &v) const;
+  void                    take_entries(const Rows &rows);
   void share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid);
-  void prepare(Row &row) const;
+  void prepare(Row &row, Sliding &slide, TrueMasses &masses) const;
   /// The largest eigenvalue of the tangential block, so that updates do not overshoot [1/kg].
   double tangential_inverse_mass(const Row &row, const bool split) const;
   /// Diagonal block times an impulse, with the split masses or the true ones.
   Vector response(const Row &row, const Vector &impulse, const bool split = true) const;
 
-  MPI_Comm                          communicator;
-  SharedUnknowns<dim>               shared;
-  std::vector<Row>                  list;
-  std::vector<Rows::Entry>          entries;
-  std::vector<Vector>               inverse_mass;
-  std::vector<Vector>               rigid_inverse_mass;
-  std::vector<dealii::Tensor<2, 3>> rigid_inverse_inertia;
-  std::vector<double>               rigid_multiplicity;
-  std::vector<double>               buffer;
+  MPI_Comm                  communicator;
+  SharedUnknowns<dim>       shared;
+  std::vector<Row>          list;
+  std::vector<Sliding>      slidings;
+  std::vector<TrueMasses>   true_masses;
+  std::vector<unsigned int> entry_unknown;
+  std::vector<double>       entry_weight;
+  std::vector<Lanes<dim>>   inverse_mass;
+  /// From the centre of each side's rigid body to the point, if there are rigid bodies [m].
+  std::vector<std::array<Vector, 2>> arms;
+  std::vector<Vector>                rigid_inverse_mass;
+  std::vector<dealii::Tensor<2, 3>>  rigid_inverse_inertia;
+  std::vector<double>                rigid_multiplicity;
+  std::vector<double>                buffer;
 };
 } // namespace coracle::contact

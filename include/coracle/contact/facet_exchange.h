@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/contact/box_tree.h>
 #include <coracle/contact/point_set.h>
 
@@ -47,6 +48,9 @@ public:
   void add_to_owners(const std::vector<dealii::Tensor<1, dim>> &values,
                      std::vector<dealii::Tensor<1, dim>>       &owned) const;
 
+  /// Of use to the same ranks only.
+  void serialize(Archive &archive);
+
 private:
   /// Nodes that one rank sends (indices into owned.nodes) or receives (indices into local.nodes).
   struct Partner
@@ -66,9 +70,10 @@ private:
     std::uint64_t                                     key;
   };
 
-  void merge(const std::vector<std::vector<SurfaceNode<dim>>> &nodes,
-             const std::vector<std::vector<FacetMessage>>     &facets);
-  void exchange(std::vector<Partner> &from, std::vector<Partner> &to, const int tag) const;
+  void        merge(const std::vector<std::vector<SurfaceNode<dim>>> &nodes,
+                    const std::vector<std::vector<FacetMessage>>     &facets);
+  static void serialize(Archive &archive, std::vector<Partner> &partners);
+  void        exchange(std::vector<Partner> &from, std::vector<Partner> &to, const int tag) const;
 
   MPI_Comm                     communicator;
   Surface<dim>                 local;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/contact/momentum.h>
 #include <coracle/contact/single_contact.h>
 
@@ -21,6 +22,13 @@ struct IterationReport
   /// Largest complementarity residual, as a velocity [m/s].
   double residual  = 0;
   bool   converged = true;
+
+  void serialize(Archive &archive)
+  {
+    archive.same("iterations", iterations);
+    archive.same("residual", residual);
+    archive.same("converged", converged);
+  }
 };
 
 /**
@@ -54,27 +62,33 @@ public:
                         const bool                 friction,
                         const IterationLimits     &limits,
                         std::vector<Vector>       &impulses,
-                        Velocities<dim>           &v);
+                        LaneVelocities<dim>       &v);
 
 private:
+  IterationReport iterate(Delassus<dim>             &delassus,
+                          const std::vector<double> &target,
+                          const bool                 friction,
+                          const IterationLimits     &limits,
+                          LaneVelocities<dim>       &v);
+
   /// One pass over the contacts in either direction; the largest change as a velocity [m/s].
   double sweep(const Delassus<dim>       &delassus,
                const std::vector<double> &target,
                const bool                 friction,
                const bool                 back,
-               std::vector<Vector>       &impulses,
-               Velocities<dim>           &v) const;
+               LaneVelocities<dim>       &v);
 
   /// Largest violation of the conditions above with everything held fixed, on this rank [m/s].
   double residual(const Delassus<dim>       &delassus,
                   const std::vector<double> &target,
                   const bool                 friction,
-                  const std::vector<Vector> &impulses,
-                  const Velocities<dim>     &v) const;
+                  const LaneVelocities<dim> &v) const;
 
-  MPI_Comm        communicator;
-  bool            accelerate;
-  Momentum<dim>   momentum;
-  Velocities<dim> before;
+  MPI_Comm            communicator;
+  bool                accelerate;
+  Momentum<dim>       momentum;
+  LaneVelocities<dim> before;
+  /// Accumulated impulses P.
+  std::vector<Lanes<dim>> impulses;
 };
 } // namespace coracle::contact

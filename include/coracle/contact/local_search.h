@@ -139,11 +139,14 @@ private:
   const Surface<dim>  *surface = nullptr;
   SurfaceTopology<dim> connections;
 
-  /// A ball around each facet.
+  /// A ball around each facet, and a layer: no part of the facet is farther than `warp` from the
+  /// plane through the centre.
   struct Ball
   {
-    dealii::Point<dim> centre;
-    double             radius;
+    dealii::Point<dim>     centre;
+    double                 radius;
+    dealii::Tensor<1, dim> normal;
+    double                 warp;
   };
   std::vector<Ball> balls;
 

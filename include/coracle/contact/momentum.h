@@ -17,29 +17,40 @@ namespace coracle::contact
  * Particles that share grid nodes make nearly dependent rows; on such problems
  * it needs the square root of the iterations of plain sweeps, and unlike
  * conjugate gradients it need not know which contacts are closed.
+ *
+ * What momentum leaves behind where contacts open and close dies out slowly,
+ * because it is carried on; the rest is solved long before. So from time to time
+ * it rests: a tenth of the iterations so far are made without it, which may end
+ * the iteration, and then it goes on with the direction it had.
  */
 template <int dim>
 class Momentum
 {
 public:
-  using Vector = dealii::Tensor<1, dim>;
-
   /// At the start of a solve.
-  void restart(const std::vector<Vector> &impulses, const Velocities<dim> &v);
+  void restart(const std::vector<Lanes<dim>> &impulses, const LaneVelocities<dim> &v);
 
   /// (start - P) . (P - P_last) of this rank's contacts [J]: positive when the iteration that
   /// began at `start` has turned back.
-  double turn(const Delassus<dim> &delassus, const std::vector<Vector> &impulses) const;
+  double turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>> &impulses) const;
 
   /**
-   * Impulses and velocities move on to where the next iteration starts.
+   * After an iteration: impulses and velocities move on to where the next one starts.
    * @param turned turn() > 0 in the sum over all ranks
    */
-  void extrapolate(const bool turned, std::vector<Vector> &impulses, Velocities<dim> &v);
+  void advance(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v);
 
 private:
-  double              t = 1;
-  std::vector<Vector> last, start;
-  Velocities<dim>     last_velocity;
+  void extrapolate(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v);
+  /// During a rest `last` is kept relative to the present: -1 makes it so, +1 undoes it.
+  void make_relative(const double                   sign,
+                     const std::vector<Lanes<dim>> &impulses,
+                     const LaneVelocities<dim>     &v);
+
+  /// Iterations since the start, at which of them the next rest begins, and where it ends.
+  unsigned int            iteration = 0, rest_begin = 0, rest_end = 0;
+  double                  t = 1;
+  std::vector<Lanes<dim>> last, start;
+  LaneVelocities<dim>     last_velocity;
 };
 } // namespace coracle::contact

@@ -83,4 +83,13 @@ struct Impulses
   /// "Mass times displacement" of the position solve [kg m]; moves positions, never velocities.
   std::vector<dealii::Tensor<1, dim>> correction;
 };
+
+/// Velocities of unknowns and rigid bodies with contact, in the order they were given.
+template <int dim>
+struct Velocities
+{
+  std::vector<dealii::Tensor<1, dim>> nodes;
+  std::vector<dealii::Tensor<1, dim>> rigid;
+  std::vector<dealii::Tensor<1, 3>>   spin;
+};
 } // namespace coracle::contact

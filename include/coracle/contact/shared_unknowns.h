@@ -3,6 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <coracle/contact/lanes.h>
 #include <coracle/contact/rows.h>
 
 namespace coracle::contact
@@ -30,8 +31,7 @@ public:
    * Collective. Where an unknown is shared, replaces value[unknown] by
    * before[unknown] plus the mean of (value - before) over its ranks.
    */
-  void average_change(std::vector<dealii::Tensor<1, dim>>       &value,
-                      const std::vector<dealii::Tensor<1, dim>> &before);
+  void average_change(std::vector<Lanes<dim>> &value, const std::vector<Lanes<dim>> &before);
 
 private:
   /// What is sent to, or received from, one rank.
@@ -50,9 +50,9 @@ private:
   /// Unknowns that others own, by owner; slots that others asked for, by asking rank.
   std::vector<Exchange> to_owner, from_users;
   /// Sums that this rank, as owner, builds up: one slot a key; its own unknown, or -1.
-  std::vector<dealii::Tensor<1, dim>> slot_sum;
-  std::vector<int>                    slot_unknown;
-  std::vector<unsigned int>           slot_count;
-  std::vector<MPI_Request>            requests;
+  std::vector<Lanes<dim>>   slot_sum;
+  std::vector<int>          slot_unknown;
+  std::vector<unsigned int> slot_count;
+  std::vector<MPI_Request>  requests;
 };
 } // namespace coracle::contact

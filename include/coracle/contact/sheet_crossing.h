@@ -37,6 +37,10 @@ public:
   /// Around a simplex; the third direction is 0 in 2-D.
   const Box &box(const unsigned int simplex) const { return boxes[simplex]; }
 
+  /// Those of a list whose boxes meet this one: enough for ways inside it. The third direction is 0
+  /// in 2-D.
+  void within(const Box &around, const List &list, std::vector<unsigned int> &result) const;
+
   /// A bit for each sheet (SurfaceBody::sheet; sheets beyond 64 share bits).
   std::uint64_t
   between(const dealii::Point<dim> &p, const dealii::Point<dim> &q, const List &list) const;
@@ -83,5 +87,7 @@ private:
   std::vector<std::array<unsigned int, dim>> simplices;
   std::vector<int>                           sheets;
   std::vector<Box>                           boxes;
+  /// Not of unit length; none in 2-D.
+  std::vector<dealii::Tensor<1, dim>> normals;
 };
 } // namespace coracle::contact

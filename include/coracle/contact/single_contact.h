@@ -4,6 +4,7 @@
 #include <coracle/contact/delassus.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace coracle::contact
 {
@@ -11,29 +12,30 @@ namespace coracle::contact
  * The next impulse of one contact, everything else held fixed: the step that
  * brings its velocity to the target, then cut to what is
  * admissible (P_n >= 0, |P_t| <= mu P_n).
- * @param u relative velocity now [m/s]
+ * @param slide what friction needs, or null for none
+ * @param u     relative velocity now [m/s]
  */
 template <int dim>
-dealii::Tensor<1, dim>
-next_impulse(const typename Delassus<dim>::Row &row,
-             const dealii::Tensor<1, dim>      &impulse,
-             dealii::Tensor<1, dim>             u,
-             const double                       target,
-             const bool                         friction)
+inline Lanes<dim>
+next_impulse(const typename Delassus<dim>::Row           &row,
+             const typename Delassus<dim>::Sliding *const slide,
+             const Lanes<dim>                            &impulse,
+             const Lanes<dim>                            &u,
+             const double                                 target)
 {
-  const double old_normal = impulse * row.normal;
+  const double old_normal = dot<dim>(impulse, row.normal);
   const double normal =
-    std::max(0., old_normal - (u * row.normal - target) / row.normal_inverse_mass);
-  if (!friction || row.friction == 0 || normal == 0)
+    std::max(0., old_normal - (dot<dim>(u, row.normal) - target) * row.normal_mass);
+  if (slide == nullptr || normal == 0)
     return normal * row.normal;
 
   // Friction sees what the normal impulse has changed.
-  u += (normal - old_normal) * row.normal_response;
-  dealii::Tensor<1, dim> tangential = impulse - old_normal * row.normal;
-  tangential -= (u - (u * row.normal) * row.normal) / row.tangential_inverse_mass;
-  const double limit = row.friction * normal, size = tangential.norm();
-  if (size > limit)
-    tangential *= limit / size;
+  const Lanes<dim> later      = u + (normal - old_normal) * slide->normal_response;
+  Lanes<dim>       tangential = impulse - old_normal * row.normal;
+  tangential -= (later - dot<dim>(later, row.normal) * row.normal) / slide->tangential_inverse_mass;
+  const double limit = slide->friction * normal, square = dot<dim>(tangential, tangential);
+  if (square > limit * limit)
+    tangential *= limit / std::sqrt(square);
   return normal * row.normal + tangential;
 }
 } // namespace coracle::contact

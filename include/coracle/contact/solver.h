@@ -21,6 +21,21 @@ struct SolverReport
   double work = 0;
   /// Greatest displacement by the position solve [m].
   double largest_correction = 0;
+
+  void serialize(Archive &archive)
+  {
+    archive.same("n_contacts", n_contacts);
+    archive.same("scale", scale);
+    archive.same("worst_violation", worst_violation);
+    archive.same("work", work);
+    archive.same("largest_correction", largest_correction);
+    {
+      const Archive::Section section(archive, "velocity");
+      velocity.serialize(archive);
+    }
+    const Archive::Section section(archive, "position");
+    position.serialize(archive);
+  }
 };
 
 /**
@@ -56,8 +71,15 @@ public:
   const Impulses<dim> &impulses() const { return result; }
   const SolverReport  &report() const { return statistics; }
 
-  /// Velocities of the unknowns and rigid bodies with contact, in the order they were given.
-  const Velocities<dim> &velocities() const { return velocity; }
+  /// What the impulses make of the predicted velocities.
+  Velocities<dim> velocities() const;
+
+  /// What one step hands to the next.
+  void serialize(Archive &archive)
+  {
+    warm_start.serialize(archive);
+    archive.same("old_dt", old_dt);
+  }
 
 private:
   void solve_split(const std::vector<Contact<dim>> &contacts, const double dt);
@@ -73,7 +95,7 @@ private:
   Delassus<dim>       delassus;
   GaussSeidel<dim>    gauss_seidel;
   WarmStart<dim>      warm_start;
-  Velocities<dim>     velocity, displacement_rate;
+  LaneVelocities<dim> velocity, displacement_rate;
   std::vector<double> target;
   std::vector<bool>   active;
   Impulses<dim>       result;

@@ -27,6 +27,6 @@ template <int dim>
 IterationReport solve_stick_slip(Delassus<dim>                       &delassus,
                                  const std::vector<bool>             &active,
                                  std::vector<dealii::Tensor<1, dim>> &impulses,
-                                 Velocities<dim>                     &v,
+                                 LaneVelocities<dim>                 &v,
                                  MPI_Comm                             communicator);
 } // namespace coracle::contact

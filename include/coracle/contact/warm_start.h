@@ -3,6 +3,8 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <coracle/base/archive.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +28,9 @@ public:
 
   /// Forget the old impulses and keep these.
   void store(const std::vector<Key> &keys, const std::vector<dealii::Tensor<1, dim>> &impulses);
+
+  /// On other ranks than have saved them, all ranks know all impulses until the next step.
+  void serialize(Archive &archive);
 
 private:
   struct Slot

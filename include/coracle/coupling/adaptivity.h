@@ -18,6 +18,8 @@ struct AdaptivityState
   double travelled = 0;
   /// Imbalance after the last sharing out: it is tried again only if it got worse.
   double reached_imbalance = 1;
+
+  void serialize(Archive &archive);
 };
 
 /**
@@ -50,6 +52,9 @@ public:
   double imbalance(const MaterialPointSystem<dim> &points,
                    const ContactCoupling<dim>     &contacts) const;
 
+  /// Between steps: cells are shared out anew if the work is uneven. Collective.
+  void balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> &contacts);
+
   AdaptivityState state;
 
 private:
@@ -60,7 +65,6 @@ private:
              StructureSystem<dim>     &structure,
              ContactCoupling<dim>     &contacts,
              const double              time);
-  void balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> &contacts);
   /// Per owned leaf, in particle-steps, besides one for the leaf.
   std::vector<double> work(const MaterialPointSystem<dim> &points,
                            const ContactCoupling<dim>     &contacts) const;

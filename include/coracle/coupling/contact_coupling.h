@@ -72,6 +72,9 @@ public:
                                      MaterialPointSystem<dim> &points,
                                      StructureSystem<dim>     &structure);
 
+  /// Between steps, after the points.
+  void serialize(Archive &archive, MaterialPointSystem<dim> &points);
+
 private:
   void solve_on_grid(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
   void solve_on_surface(MaterialPointSystem<dim> &points,

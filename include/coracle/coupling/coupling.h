@@ -10,7 +10,7 @@ namespace coracle
 template <int dim>
 struct CouplingOptions
 {
-  double                 safety_factor, largest_step;
+  double                 safety_factor, largest_step, smallest_share;
   bool                   split_fields;
   dealii::Tensor<1, dim> gravity;
 
@@ -28,7 +28,11 @@ class Coupling
 public:
   /// All sections that every case has. Collective; throws UserError.
   static void declare(Declaration &root);
-  Coupling(const Parameters &root, MPI_Comm comm);
+  /// @param saved_octree of a state that is loaded next (see Octree); empty: the start of the case
+  Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree = "");
+
+  /// The whole state between steps but for the octree's leaves. Collective.
+  void serialize(Archive &archive);
 
   /// One step; no longer than up to `end_time`. Collective; throws RunFailure.
   void advance(const double end_time);
@@ -56,12 +60,15 @@ public:
   double worst_gap = 0;
 
 private:
+  void share_out();
+  /// A step far below the first one is a RunFailure that says what asks for it.
+  void check_time_step(const double dt);
   /// What went wrong on any rank, and the particle ledger: the same exception on all ranks.
   void check_state() const;
   void count_work();
 
   MPI_Comm      comm;
-  double        current_time = 0, current_dt = 0;
+  double        current_time = 0, current_dt = 0, first_dt = 0;
   std::uint64_t n_steps = 0;
 };
 } // namespace coracle

@@ -49,10 +49,12 @@ private:
   void follow_sheets(const bool gimp);
   void find_near_leaves(const double skin, const bool gimp);
   /// Box around the nodes that particles in a leaf can reach.
-  contact::Box              reach(const unsigned int leaf, const bool gimp) const;
-  void                      extend(const unsigned int leaf, contact::Box &box) const;
-  void                      find_candidates(const MaterialPointBody<dim> &body);
-  void                      cut(MaterialPointBody<dim> &body, NodeSplit<dim> &split);
+  contact::Box reach(const unsigned int leaf, const bool gimp) const;
+  void         extend(const unsigned int leaf, contact::Box &box) const;
+  void         find_candidates(const MaterialPointBody<dim> &body);
+  void         cut(MaterialPointBody<dim> &body, NodeSplit<dim> &split);
+  contact::Box
+  box_around(const dealii::Point<dim> &x, const unsigned int leaf, const double half) const;
   const dealii::Point<dim> &place_of_node(const unsigned int             node,
                                           const typename Crossing::List &list);
 
@@ -67,6 +69,8 @@ private:
   std::vector<dealii::Point<dim>> searched_at;
   /// Has there been a search, and have sheets moved since the last?
   bool searched = false, moved = false;
+  /// How far sheets may have moved since then [m].
+  double searched_skin = 0;
 
   contact::FacetExchange<dim> exchange;
   Crossing                    crossing;
@@ -79,6 +83,8 @@ private:
   std::vector<int> place_of_leaf;
 
   std::vector<Candidate> candidates;
+  /// Simplices near the present particle.
+  std::vector<unsigned int> close;
   /// Nodes of this step, moved off mid-surfaces; -1 where not asked for yet.
   std::vector<int>                node_places;
   std::vector<unsigned int>       asked_nodes;

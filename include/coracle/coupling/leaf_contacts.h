@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
+
 #include <vector>
 
 namespace coracle
@@ -38,6 +40,17 @@ public:
   double number(const unsigned int leaf) const
   {
     return n_steps > 0 ? numbers[leaf] / n_steps : 0.;
+  }
+
+  /// On other ranks leaves are others: what is known of them is forgotten.
+  void serialize(Archive &archive, const unsigned int n_leaves)
+  {
+    if (!archive.is_exact())
+      return reinit(n_leaves);
+    archive.own("impulses", impulses);
+    archive.own("numbers", numbers);
+    archive.own("duration", duration);
+    archive.own("n_steps", n_steps);
   }
 
 private:

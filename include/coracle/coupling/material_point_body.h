@@ -30,11 +30,15 @@ public:
   /// Entries of `Bodies/<name>` where Kind = material points.
   static void declare(Declaration &body);
 
-  /// Generates the particles that lie in this rank's leaves. Collective.
+  /// Generates the particles that lie in this rank's leaves, or none. Collective.
   MaterialPointBody(const Parameters      &body,
                     const MaterialLibrary &materials,
                     const Octree<dim>     &octree,
-                    const int              n_sheets);
+                    const int              n_sheets,
+                    const bool             with_particles = true);
+
+  /// Between steps. Particles saved by other ranks must be handed out then, see redistribute().
+  void serialize(Archive &archive);
 
   const std::string &name() const { return points.name(); }
   /// 0, or the part of its size that a particle reaches out from its centre.

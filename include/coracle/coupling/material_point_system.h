@@ -20,16 +20,23 @@ template <int dim>
 class MaterialPointSystem
 {
 public:
-  /// Sections `Grid` and `Bodies`. Collective.
+  /// Sections `Grid` and `Bodies`; with a saved octree (see Octree) there are no particles until
+  /// they are loaded. Collective.
   MaterialPointSystem(const Parameters             &root,
                       const MaterialLibrary        &materials,
                       const dealii::Tensor<1, dim> &gravity,
                       const int                     n_sheets,
-                      MPI_Comm                      comm);
+                      MPI_Comm                      comm,
+                      const std::string            &saved_octree = "");
+
+  /// Between steps. Collective.
+  void serialize(Archive &archive);
 
   /// Bound on the step from wave speed, particle speed and viscosity in the cells, on all ranks
   /// [s].
   double stable_time_step() const;
+  /// The body that asks for the shortest step, and its fastest particle, for messages. Collective.
+  std::string describe_limit() const;
 
   /// Particles and nodes on different sides of sheets are told apart for this step. Collective.
   void split_fields(const contact::Surface<dim> &surface);

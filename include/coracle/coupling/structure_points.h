@@ -37,6 +37,9 @@ public:
   /// Structures that start nearer to each other than the contact distance: a UserError. Collective.
   void refuse_initial_overlaps(const Parameters &root, StructureSystem<dim> &structure);
 
+  /// The sides of sheets that points are on.
+  void serialize(Archive &archive);
+
 private:
   /// One body's points on this rank.
   struct Part

@@ -27,6 +27,8 @@ public:
 
   /// Over all ranks [s].
   double stable_time_step() const;
+  /// Whose step that is, for messages. Collective.
+  std::string describe_limit() const;
 
   void assemble_forces(const double time);
   void predict_velocities(const double dt);
@@ -58,6 +60,9 @@ public:
 
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
+
+  /// Between steps.
+  void serialize(Archive &archive);
 
   /// Elements of deformable bodies on this rank.
   unsigned int n_elements() const

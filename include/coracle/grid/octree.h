@@ -82,10 +82,18 @@ public:
   /**
    * @param weight work expected in a cell, from its centre and size, >= 0 (1 for a cell with
    *        nothing in it is added); decides the partition. May be empty.
+   * @param saved what save() wrote, by any number of ranks: its leaves and, on as many ranks, its
+   *        partition instead of refinements and weights; empty: none
    */
   Octree(const OctreeDescription<dim>                                          &description,
          const std::function<double(const dealii::Point<dim> &, const double)> &weight,
-         MPI_Comm                                                               communicator);
+         MPI_Comm                                                               communicator,
+         const std::string                                                     &saved = "");
+
+  /// The leaves as they are, and who owns them, to FILE and FILE.info. Collective. A full disk ends
+  /// the program inside p4est: see to it that saved_size() bytes are free.
+  void          save(const std::string &file) const;
+  std::uint64_t saved_size() const;
 
   /**
    * Refine and coarsen by one level at most, and share out anew. Neighbours, also through edges and
@@ -158,7 +166,9 @@ public:
   std::size_t memory_consumption() const;
 
 private:
-  void make_grid();
+  void make_coarse_grid();
+  void refine();
+  void load(const std::string &file);
   void partition(const std::function<double(const dealii::Point<dim> &, const double)> &weight);
   /// All numbers anew.
   void number();

@@ -33,6 +33,14 @@ public:
 
   void write_statistics(const Report<dim> &report, Coupling<dim> &coupling);
 
+  /// Steps after which files and rows were written last; -1: never. A run that goes on knows them.
+  std::int64_t step_of_files() const { return files_step; }
+  std::int64_t step_of_row() const { return row_step; }
+
+  /// What has been written and reported. Collective; when loaded, files that came later are cut or
+  /// forgotten.
+  void serialize(Archive &archive);
+
 private:
   void
   write_particles(const MaterialPointBody<dim> &body, ParticleOutput &output, const double time);
@@ -59,5 +67,6 @@ private:
   std::vector<dealii::Tensor<1, dim>> reported_force;
   double                              reported_time = 0;
   bool                                first_report  = true;
+  std::int64_t                        files_step = -1, row_step = -1;
 };
 } // namespace coracle

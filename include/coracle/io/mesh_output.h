@@ -52,6 +52,8 @@ public:
              const std::vector<Field> &node_fields,
              const std::vector<Field> &cell_fields);
 
+  void serialize(Archive &archive) { series.serialize(archive); }
+
 private:
   VtuSeries series;
 };

@@ -25,9 +25,14 @@ class OutputDirectory
 {
 public:
   /// `Output/Directory`, or output/NAME for a case file NAME.prm if that is not set. Collective.
+  /// @param goes_on what an earlier run left stays
   OutputDirectory(const Parameters  &output_section,
                   const std::string &case_file,
-                  MPI_Comm           communicator);
+                  MPI_Comm           communicator,
+                  const bool         goes_on = false);
+
+  /// The folder's name as above.
+  static std::string choose(const Parameters &output_section, const std::string &case_file);
 
   /// A given folder. Collective.
   OutputDirectory(const std::string &path, MPI_Comm communicator);
@@ -41,7 +46,8 @@ public:
   /**
    * The file name part for a time series of this name; a second series that
    * would write the same files (a body called "octree", or bodies "a/b" and
-   * "a_b") is a UserError. Removes what an earlier run left of it. Collective.
+   * "a_b") is a UserError. Removes what an earlier run left of it, unless
+   * this run goes on from that. Collective.
    */
   std::string claim(const std::string &series_name);
 
@@ -55,6 +61,7 @@ private:
 
   std::string           directory;
   MPI_Comm              comm;
+  const bool            goes_on = false;
   std::set<std::string> claimed;
 };
 } // namespace coracle

@@ -49,6 +49,9 @@ public:
    */
   void write(const double time, const std::size_t n_particles, const std::vector<Field> &fields);
 
+  /// As VtuSeries::serialize().
+  void serialize(Archive &archive);
+
 private:
   void
   write_hdf5(const double time, const std::size_t n_particles, const std::vector<Field> &fields);

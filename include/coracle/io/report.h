@@ -4,6 +4,7 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <coracle/base/archive.h>
 #include <coracle/io/statistics.h>
 
 #include <cstdint>
@@ -51,6 +52,12 @@ public:
   void start(const EnergyBooks &initial);
   /// (B - B(0)) / largest magnitude so far; 0 while nothing moves.
   double error(const EnergyBooks &now);
+
+  void serialize(Archive &archive)
+  {
+    archive.same("initial_balance", initial_balance);
+    archive.same("scale", scale);
+  }
 
 private:
   double initial_balance = 0, scale = 0;

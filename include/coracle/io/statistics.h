@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <coracle/base/archive.h>
+
 #include <fstream>
 #include <map>
 #include <string>
@@ -44,11 +46,20 @@ public:
   }
   void end_row();
 
+  /**
+   * When loaded, the file is cut behind the rows it had then, and goes on from there.
+   * Throws RunFailure on rank 0 if it has fewer, or other columns.
+   */
+  void serialize(Archive &archive);
+
   /// As in the header row: "dt [s]".
   const std::vector<std::string> &titles() const { return column_titles; }
 
 private:
-  void write_line(const std::string &line);
+  void        write_line(const std::string &line);
+  std::string header() const;
+  /// Cut the file behind the rows written.
+  void go_on();
 
   std::string                         file_name;
   bool                                writes;
@@ -57,6 +68,7 @@ private:
   std::map<std::string, unsigned int> column_of_name;
   std::vector<double>                 values;
   std::vector<bool>                   is_set;
-  bool                                row_open = false, header_written = false;
+  bool                                row_open = false;
+  std::uint64_t                       n_rows   = 0;
 };
 } // namespace coracle

@@ -34,10 +34,17 @@ struct VerdictLimits
   double energy_gain       = 0.02; ///< share of the largest energy
   double energy_loss       = 0.10; ///< share of the largest energy
   double unconverged_share = 0.01; ///< of the steps with contact
+  /// The run ends where energy is gained or lost beyond this share.
+  double energy_stop = 1e300;
 
   static void          declare(Declaration &verdict_section);
   static VerdictLimits read(const Parameters &verdict_section);
 };
+
+/// Throws RunFailure where the energy balance is beyond what a run may go on with, or a number is
+/// not finite.
+template <int dim>
+void check_while_running(const Report<dim> &report, const VerdictLimits &limits);
 
 /**
  * FAILED: penetrations, a ledger that is not closed, a number that is not

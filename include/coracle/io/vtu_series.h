@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/io/output_directory.h>
 #include <coracle/io/vtu_file.h>
 
@@ -27,6 +28,9 @@ public:
 
   /// Collective. `time` [s] should grow from call to call.
   void write(const double time, const VtuPiece &piece);
+
+  /// What has been written; when loaded, what came later is forgotten.
+  void serialize(Archive &archive);
 
 private:
   std::string                                 folder, name;

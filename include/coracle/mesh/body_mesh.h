@@ -46,7 +46,7 @@ public:
   unsigned int  n_owned_nodes() const { return exchange.n_owned(); }
   unsigned int  n_nodes() const { return exchange.n_local(); }
   std::uint64_t n_global_nodes() const { return exchange.indices()->size(); }
-  /// Global number of a local node, the same for any rank that has it.
+  /// Global number of a local node, the same for any rank that has it and for any number of ranks.
   std::uint64_t key(const unsigned int node) const
   {
     return exchange.indices()->local_to_global(node);

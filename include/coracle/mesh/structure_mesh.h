@@ -60,6 +60,8 @@ public:
 
   /// Local nodes of each owned element in deal.II's order (first coordinate runs fastest).
   std::vector<std::array<unsigned int, nodes_per_element>> elements;
+  /// Numbers of the elements that do not depend on the ranks.
+  std::vector<std::uint64_t> element_keys;
   /// Each element's number among the active cells, for cell data in output.
   std::vector<unsigned int> active_cell_index;
   /// Of owned elements; none in a mesh without local refinement.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
 #include <coracle/particles/cut_points.h>
 #include <coracle/particles/layout.h>
@@ -90,11 +91,17 @@ public:
   /// The row becomes a hole.
   void remove(const std::size_t row);
 
+  /// No rows are left.
+  void clear();
+
   /// Since the set-up, on this rank.
   ParticleLedger ledger;
 
   /// Working space of the sweeps over cells.
   LeafMeans means;
+
+  /// All state. On other ranks than have saved it, rows come as they are and belong to no cell yet.
+  void serialize(Archive &archive);
 
   double      kinetic_energy() const;
   double      mass() const;

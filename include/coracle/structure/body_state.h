@@ -4,6 +4,8 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <coracle/base/archive.h>
+
 namespace coracle
 {
 /**
@@ -25,6 +27,17 @@ struct Energies
   double contact_work = 0;
   /// Work of gravity, loads, and of the supports of prescribed motion.
   double external_work = 0;
+
+  /// Of one rank's share.
+  void serialize(Archive &archive)
+  {
+    archive.share("kinetic", kinetic);
+    archive.share("strain", strain);
+    archive.share("hourglass", hourglass);
+    archive.share("damping", damping);
+    archive.share("contact_work", contact_work);
+    archive.share("external_work", external_work);
+  }
 };
 
 /// One body as a whole.

@@ -3,6 +3,7 @@
 
 #include <deal.II/base/aligned_vector.h>
 
+#include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
 #include <coracle/material/library.h>
 #include <coracle/mesh/structure_mesh.h>
@@ -66,6 +67,9 @@ public:
 
   /// Largest stable step of this rank's elements as of the last update, infinite without any [s].
   double stable_time_step() const { return stable_step; }
+
+  /// @param keys of all elements, see StructureMesh::element_keys
+  void serialize(Archive &archive, const std::vector<std::uint64_t> &keys);
 
   unsigned int size() const { return n_elements; }
   unsigned int n_points() const { return integration == Integration::full ? n_nodes : 1; }

@@ -57,10 +57,13 @@ public:
   void apply_corrections();
 
   void move(const double dt);
-  void update_stress(const double) {}
+  /// Throws RunFailure, on all ranks, where the motion is not a number.
+  void update_stress(const double);
 
   Energies         energies() const;
   BodySummary<dim> summary() const;
+
+  void serialize(Archive &archive);
 
   // What contact solves for (RigidUnknown of contact/contact.h).
   const dealii::Point<dim> &centre() const { return body_centre; }

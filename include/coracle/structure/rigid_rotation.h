@@ -3,6 +3,8 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <coracle/base/archive.h>
+
 #include <array>
 
 namespace coracle
@@ -51,6 +53,13 @@ public:
   Vector3 turned(const Vector3 &arm) const;
   /// w, x, y, z of the unit quaternion.
   const std::array<double, 4> &orientation() const { return quaternion; }
+
+  void serialize(Archive &archive)
+  {
+    archive.same("orientation", quaternion);
+    archive.same("angular_momentum", momentum);
+    archive.same("given_spin", given_spin);
+  }
 
 private:
   using Quaternion = std::array<double, 4>;

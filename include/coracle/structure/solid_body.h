@@ -67,6 +67,8 @@ public:
   /// only.
   void update_stress(const double dt);
 
+  void serialize(Archive &archive);
+
   /// Collective sums.
   Energies         energies() const;
   BodySummary<dim> summary() const;

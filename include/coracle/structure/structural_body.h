@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
 #include <coracle/base/parameters.h>
 #include <coracle/mesh/body_mesh.h>
@@ -70,6 +71,9 @@ protected:
   static void declare_surface(Declaration &body_section);
   /// Nodes are at their reference positions.
   StructuralBody(const Parameters &body, std::unique_ptr<const BodyMesh<dim>> mesh);
+
+  /// @param summed columns to which each rank has added what its elements give
+  void serialize_nodes(Archive &archive, const Archive::Summed &summed);
 
   Vector vector(const unsigned int first_column, const unsigned int node) const
   {

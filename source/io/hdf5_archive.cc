@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exceptions.h>
+#include <coracle/io/hdf5_archive.h>
+
+namespace coracle
+{
+namespace
+{
+/// The file in memory grows by this [bytes].
+constexpr std::size_t growth = std::size_t(16) << 20;
+
+hid_t
+type_of(const Block::Type type)
+{
+  switch (type)
+    {
+      case Block::Type::real:
+        return H5T_NATIVE_DOUBLE;
+      case Block::Type::natural:
+        return H5T_NATIVE_UINT64;
+      case Block::Type::natural_32:
+        return H5T_NATIVE_UINT32;
+      case Block::Type::integer_32:
+        return H5T_NATIVE_INT32;
+      default:
+        return H5T_NATIVE_UCHAR;
+    }
+}
+
+/// False if it is none of ours.
+bool
+find_type(const hid_t stored, Block::Type &type)
+{
+  for (const auto candidate : {Block::Type::real,
+                               Block::Type::natural,
+                               Block::Type::natural_32,
+                               Block::Type::integer_32,
+                               Block::Type::byte})
+    if (H5Tequal(stored, type_of(candidate)) > 0)
+      {
+        type = candidate;
+        return true;
+      }
+  return false;
+}
+
+RunFailure
+not_readable(const std::string &file, const std::string &name)
+{
+  return RunFailure("a checkpoint does not fit this case",
+                    file + ": '" + name + "' is not in it, or cannot be read",
+                    "go on with the program and the parameter file that wrote it");
+}
+} // namespace
+
+Hdf5Archive::Hdf5Archive() : names(1), files(1, -1)
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, growth, false);
+  files[0] = H5Fcreate("coracle_checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  H5Pclose(access);
+  AssertThrow(files[0] >= 0, dealii::ExcMessage("HDF5 has no file in memory."));
+}
+
+Hdf5Archive::Hdf5Archive(const std::vector<std::string> &files)
+  : names(files), files(files.size(), -1)
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Hdf5Archive::~Hdf5Archive()
+{
+  for (const hid_t file : files)
+    if (file >= 0)
+      H5Fclose(file);
+}
+
+hid_t
+Hdf5Archive::open(const unsigned int part) const
+{
+  if (files[part] < 0)
+    files[part] = H5Fopen(names[part].c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (files[part] < 0)
+    throw not_readable(names[part], "/");
+  return files[part];
+}
+
+void
+Hdf5Archive::put(const std::string &name, const Block &block, const void *const values)
+{
+  const hsize_t extent[] = {block.n_rows, block.n_columns};
+  const hid_t   space    = H5Screate_simple(2, extent, nullptr);
+  const hid_t   links    = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(links, 1);
+  // The same state makes the same file.
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(creation, false);
+  const hid_t set =
+    H5Dcreate2(files[0], name.c_str(), type_of(block.type), space, links, creation, H5P_DEFAULT);
+  const bool good =
+    set >= 0 && (block.n_rows * block.n_columns == 0 ||
+                 H5Dwrite(set, type_of(block.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+  H5Dclose(set);
+  H5Pclose(creation);
+  H5Pclose(links);
+  H5Sclose(space);
+  AssertThrow(good, dealii::ExcMessage("HDF5 cannot take '" + name + "' of a checkpoint."));
+}
+
+bool
+Hdf5Archive::has(const unsigned int part, const std::string &name) const
+{
+  const hid_t file = open(part);
+  for (std::size_t end = 0; end != std::string::npos;)
+    {
+      end = name.find('/', end + 1);
+      if (H5Lexists(file, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0)
+        return false;
+    }
+  return true;
+}
+
+std::vector<char>
+Hdf5Archive::get(const unsigned int part, const std::string &name, Block &block) const
+{
+  const hid_t set = H5Dopen2(open(part), name.c_str(), H5P_DEFAULT);
+  if (set < 0)
+    throw not_readable(names[part], name);
+  const hid_t space = H5Dget_space(set), type = H5Dget_type(set);
+  hsize_t     extent[2] = {0, 0};
+  bool        good      = H5Sget_simple_extent_ndims(space) == 2 && find_type(type, block.type);
+  if (good)
+    H5Sget_simple_extent_dims(space, extent, nullptr);
+  block.n_rows    = extent[0];
+  block.n_columns = extent[1];
+  std::vector<char> bytes(extent[0] * extent[1] * H5Tget_size(type));
+  good =
+    good && (bytes.empty() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0);
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Dclose(set);
+  if (!good)
+    throw not_readable(names[part], name);
+  return bytes;
+}
+
+std::vector<char>
+Hdf5Archive::image()
+{
+  H5Fflush(files[0], H5F_SCOPE_GLOBAL);
+  std::vector<char> bytes(std::max<ssize_t>(0, H5Fget_file_image(files[0], nullptr, 0)));
+  AssertThrow(H5Fget_file_image(files[0], bytes.data(), bytes.size()) > 0,
+              dealii::ExcMessage("HDF5 does not give a checkpoint back."));
+  H5Fclose(files[0]);
+  files[0] = -1;
+  return bytes;
+}
+} // namespace coracle

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run that goes on from a checkpoint equals one that never stopped: on as many ranks bit by bit, in
+results and in the whole state more than 200 steps later; on other ranks to round-off.
+
+The cases have contact with friction (a folded sheet with water on it, an elastic obstacle, two bars
+that meet), a free rigid body, moving sheets, and material points with a full stress.
+"""
+import json
+import pathlib
+import shutil
+
+from run_case import Test
+
+test = Test()
+
+
+def manifest(checkpoint):
+    return json.loads((checkpoint / "manifest.json").read_text())["contents"]
+
+
+def state(checkpoint):
+    """Sizes and checksums of the files that hold the state: not of the parameters, which name the
+    folder."""
+    files = manifest(checkpoint)["files"]
+    return {name: files[name] for name in files if name != "parameters.prm"}
+
+
+def checkpoints(directory):
+    return sorted((directory / "checkpoints").glob("step_*"))
+
+
+def stop_at(directory, case, step):
+    """A copy of a run as it was when it was killed after the checkpoint of this step."""
+    copy = test.new_directory(case)
+    shutil.copytree(directory, copy)
+    for checkpoint in checkpoints(copy):
+        if manifest(checkpoint)["step"] > step:
+            shutil.rmtree(checkpoint)
+    return copy
+
+
+def same_ranks(case, values, ranks, step):
+    values = {"Checkpoint/Interval in steps": 50, "Checkpoint/Number kept": 100, **values}
+    whole = test.run(case, values, ranks, exit_code=None).directory
+    copy = stop_at(whole, case, step)
+    after = test.run(case, values, ranks, ["--restart"], None, copy)
+    name = f"{case} on {ranks} ranks"
+    last = manifest(checkpoints(whole)[-1])
+    test.check(f"{name}: {last['step'] - step} steps after step {step}", last["step"] - step >= 200)
+    test.check(f"{name}: it was continued there", f"step {step}," in after.text)
+    test.check(f"{name}: the statistics are the same",
+               (whole / "statistics.csv").read_bytes() == (copy / "statistics.csv").read_bytes())
+    for checkpoint in checkpoints(whole):
+        if not test.check(f"{name}: the state of {checkpoint.name} is the same",
+                          state(checkpoint) == state(copy / "checkpoints" / checkpoint.name)):
+            break
+    for listing in [*whole.glob("*.pvd"), *whole.glob("*.xdmf")]:
+        test.check(f"{name}: {listing.name} is the same",
+                   listing.read_bytes() == (copy / listing.name).read_bytes())
+    return whole
+
+
+def other_ranks(case, values, before, after, step, tolerance=1e-12):
+    """Rows of a continuation on other ranks against those of the run itself, relative to the largest
+    entry of a column."""
+    values = {"Checkpoint/Interval in steps": step, "Output/Statistics interval in steps": 1,
+              # So that contact does not depend on the order in which it is solved.
+              "Contact/Tolerance": 1e-13, "Contact/Maximum iterations": 100000, **values}
+    whole = test.run(case, values, before, exit_code=None)
+    copy = stop_at(whole.directory, case, step)
+    result = test.run(case, values, after, ["--restart"], None, copy)
+    name = f"{case} saved by {before}, continued by {after} ranks"
+    test.check(f"{name}: {len(whole['step'])} rows", result["step"] == whole["step"])
+    worst = {}
+    for column in whole.columns:
+        # What the solver tells of itself is round-off.
+        if not column.startswith(("contact.iterations", "contact.residual", "contact.worst")):
+            scale = max(map(abs, whole[column])) or 1
+            if column in ("worst_gap [m]", "energy.balance_error", "contact.energy_fed [J]"):
+                scale = {"w": 1e-3, "e": 1, "c": max(whole["energy.kinetic [J]"])}[column[0]]
+            worst[column] = max(abs(a - b) for a, b in zip(whole[column], result[column])) / scale
+    column = max(worst, key=worst.get)
+    test.check(f"{name}: all agree to {worst[column]:.2g} ({column})", worst[column] <= tolerance)
+
+
+FRICTION = {"Bodies/plate/Friction": 0.3, "End time": "10 ms"}
+for n in (1, 2):
+    same_ranks("folded_plate/folded_plate.prm", FRICTION, n, 250)
+    same_ranks("water_entry/water_entry.prm", {"End time": "10 ms"}, n, 200)
+    # The octree changes on the way, particles split and merge, ranks are balanced.
+    same_ranks("adaptive_study/water_entry.prm", {"End time": "6 ms"}, n, 250)
+
+other_ranks("water_entry/water_entry.prm", {"End time": "4.5 ms"}, 1, 2, 200)
+other_ranks("water_entry/water_entry.prm", {"End time": "4.5 ms"}, 3, 2, 200)
+test.finish()

@@ -120,13 +120,9 @@ PathAudit<dim>::way_off(const unsigned int end, const int known_side)
   way *= side;
   // Away from all of these simplices, or else, where that leads into the body (saddles, folds),
   // along and above one of them.
-  const auto rise = [&](const dealii::Tensor<1, dim> &a) {
-    double lowest = std::numeric_limits<double>::max();
-    for (const auto &one : touched)
-      lowest = std::min(lowest, side * (one.normal * a));
-    return lowest / std::max(a.norm(), 1e-300);
-  };
-  double lowest = rise(way);
+  double lowest = std::numeric_limits<double>::max();
+  for (const auto &one : touched)
+    lowest = std::min(lowest, side * (one.normal * way) / std::max(way.norm(), 1e-300));
   if (lowest < 0.02)
     {
       const auto best =
@@ -134,9 +130,24 @@ PathAudit<dim>::way_off(const unsigned int end, const int known_side)
           return side * (a.normal * way) < side * (b.normal * way);
         });
       way    = side * best->normal + best->inward;
-      lowest = 0.5;
+      lowest = std::sqrt(0.5);
     }
+  // Farther in a valley, so as to be off its slopes.
+  else if (!in_valley(side))
+    lowest = 1;
   return step_off * size / (lowest * way.norm()) * way;
+}
+
+/// Does one of the simplices that the point is on rise above another, seen from this side?
+template <int dim>
+bool
+PathAudit<dim>::in_valley(const int side) const
+{
+  for (const auto &a : touched)
+    for (const auto &b : touched)
+      if (side * (a.normal * b.inward) > 1e-6)
+        return true;
+  return false;
 }
 
 /// Meetings with all facets, in the order of time; false where one is in doubt.

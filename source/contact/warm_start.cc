@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/contact/warm_start.h>
 
+#include <algorithm>
+#include <tuple>
+
 namespace coracle::contact
 {
 template <int dim>
@@ -49,18 +52,25 @@ template <int dim>
 void
 WarmStart<dim>::serialize(Archive &archive)
 {
-  std::vector<Key>                    keys;
-  std::vector<dealii::Tensor<1, dim>> impulses;
-  // From a free slot on, so that entries are met in the order in which they came.
-  std::size_t first = 0;
+  // From a free slot on, so that entries of one key are met in the order in which they came; then
+  // in an order that does not depend on how large the table has grown.
+  std::vector<Slot> entries;
+  std::size_t       first = 0;
   while (first < slots.size() && slots[first].used)
     ++first;
   for (std::size_t i = 0; i < slots.size() && !archive.loads(); ++i)
     if (const Slot &slot = slots[(first + i) % slots.size()]; slot.used)
-      {
-        keys.push_back(slot.key);
-        impulses.push_back(slot.impulse);
-      }
+      entries.push_back(slot);
+  std::stable_sort(entries.begin(), entries.end(), [](const Slot &a, const Slot &b) {
+    return std::tie(a.key.point, a.key.facet) < std::tie(b.key.point, b.key.facet);
+  });
+  std::vector<Key>                    keys;
+  std::vector<dealii::Tensor<1, dim>> impulses;
+  for (const Slot &slot : entries)
+    {
+      keys.push_back(slot.key);
+      impulses.push_back(slot.impulse);
+    }
   archive.all("keys", keys);
   archive.all("impulses", impulses);
   if (archive.loads())

@@ -341,6 +341,7 @@ MaterialPointBody<dim>::serialize(Archive &archive)
   archive.largest("rate", sweep.rate);
   archive.largest("diffusion_rate", sweep.diffusion_rate);
   archive.share("internal_energy", internal_energy);
+  archive.same("particles_across", particles_across);
 }
 
 template class MaterialPointBody<2>;

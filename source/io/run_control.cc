@@ -22,6 +22,9 @@ enum Reason : int
 
 volatile std::sig_atomic_t signals = 0;
 
+/// The limit of wall time is for all of the run, set-up too.
+const auto program_start = std::chrono::steady_clock::now();
+
 void
 take_signal(const int signal)
 {
@@ -44,9 +47,8 @@ RunControl::RunControl(const CheckpointSettings &settings,
   : settings(settings)
   , stop_file(settings.stop_file.empty() ? "" : output_directory + "/" + settings.stop_file)
   , comm(communicator)
-  , start(Clock::now())
-  , last_step(start)
-  , last_checkpoint(start)
+  , last_step(Clock::now())
+  , last_checkpoint(last_step)
 {
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1})
     std::signal(signal, take_signal);
@@ -73,7 +75,7 @@ RunControl::time_is_up()
   longest_step = std::max(longest_step, seconds_since(last_step));
   last_step    = Clock::now();
   return settings.wall_limit > 0 &&
-         seconds_since(start) + 2 * longest_step + 2 * longest_checkpoint >
+         seconds_since(program_start) + 2 * longest_step + 2 * longest_checkpoint >
            (1 - share_of_limit) * settings.wall_limit;
 }
 

@@ -203,7 +203,7 @@ compare(const unsigned long n, const unsigned long seed)
           continue;
         }
       const auto         size  = sizes<dim>(s);
-      const auto         exact = answer<dim>(s, v, std::max(2e-8 * size[0], 2e-11 * size[1]));
+      const auto         exact = answer<dim>(s, v, std::max(5e-8 * size[0], 2e-11 * size[1]));
       const unsigned int found = count<dim>(s.box ? box : simplex, s, scale, shift);
       crossings += exact.entries;
       missed += (found < exact.entries);

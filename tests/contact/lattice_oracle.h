@@ -314,8 +314,7 @@ times_in(const Step<dim>                    &s,
       was_positive = positive;
     }
   const int last = winding<dim>(v, end);
-  if ((old >= 0 || !on_edge<dim>(v, end)) &&
-      !(last != 0 && tolerance > 0 && depth<dim>(s, v, end) < tolerance))
+  if ((old >= 0 || !on_edge<dim>(v, end)) && !(tolerance > 0 && depth<dim>(s, v, end) < tolerance))
     result += (last > old);
   return result;
 }

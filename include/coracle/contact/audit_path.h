@@ -103,6 +103,7 @@ public:
 private:
   void                   touch(const unsigned int end);
   dealii::Tensor<1, dim> way_off(const unsigned int end, const int side);
+  bool                   in_valley(const int side) const;
   bool                   meet_all(const Path<dim> &moved, const double doubt);
   void                   drop_touches(const Path<dim> &moved, const double depth);
 

@@ -16,7 +16,7 @@ namespace coracle
 class RunControl
 {
 public:
-  /// Signals are caught from now on. The clock starts here.
+  /// Signals are caught from now on. The limit of wall time counts from the start of the program.
   RunControl(const CheckpointSettings &settings,
              const std::string        &output_directory,
              MPI_Comm                  communicator);
@@ -51,7 +51,7 @@ private:
   CheckpointSettings settings;
   const std::string  stop_file;
   MPI_Comm           comm;
-  Clock::time_point  start, last_step, last_checkpoint;
+  Clock::time_point  last_step, last_checkpoint;
   double             longest_step = 0, longest_checkpoint = 0;
 };
 } // namespace coracle

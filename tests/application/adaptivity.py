@@ -29,8 +29,13 @@ def main():
     test.check("the same cells on 3 ranks", parallel["cells"] == adaptive["cells"])
     test.band("imbalance", max(parallel["imbalance"][1:]), 1.0, 1.2)
 
-    water = test.run("hydrostatic/cycles.prm", {"Output/Particle format": "none", "End time": "0.6"})
-    check_soundness(test, water)
+    # The verdict compares what GIMP makes up with the energy of water at rest, which is next to nothing.
+    still = {"Output/Particle format": "none", "End time": "0.6", "Bodies/water/Shape functions": "gimp"}
+    unchanged = test.run("hydrostatic/at_rest.prm", still, exit_code=None)
+    water = test.run("hydrostatic/cycles.prm", still, exit_code=None)
+    test.check("no particle is lost", water["particles"][-1] == water["particles"][0])
+    name = "energy.balance_error"
+    test.band("energy from nowhere, more than without cycles", water[name][-1] - unchanged[name][-1], -0.005, 0.005)
     test.check("cells were refined and coarsened",
                max(water["cells"]) > 4 * water["cells"][0] and water["cells"][-1] == water["cells"][0])
     mass = water["water.mass [kg]"][0]

@@ -22,8 +22,8 @@ template <int dim>
 std::string
 grid(const std::string &criteria, const std::string &more = "")
 {
-  return "subsection Grid\n set Upper corner = " + numbers<dim>({1, 1, 1}) +
-         "\n set Cell size = 0.125\n" + more +
+  return "subsection Grid\n set Lower corner = " + numbers<dim>({0, 0, 0}) +
+         "\n set Upper corner = " + numbers<dim>({1, 1, 1}) + "\n set Cell size = 0.125\n" + more +
          " subsection Adaptivity\n set Interval in steps = 10\n" + " subsection Criteria\n" +
          criteria + " end\n end\nend\n";
 }
@@ -72,9 +72,10 @@ test_rest()
                      " set Refine above = 0.5\n set Coarsen below = -0.5\n end\n") +
     water +
     "subsection Bodies\n subsection water\n set Material = water\n set Particle spacing = 0.0625\n"
-           " set Shape functions = gimp\n set Upper corner = " +
-    numbers<dim>({1, dim == 2 ? 0.5 : 1, 0.5}) + "\n set Initial pressure = 1000 * 10 * (0.5 - " +
-    up + ")\n end\nend\n");
+           " set Shape functions = gimp\n set Lower corner = " +
+    numbers<dim>({0, 0, 0}) +
+    "\n set Upper corner = " + numbers<dim>({1, dim == 2 ? 0.5 : 1, 0.5}) +
+    "\n set Initial pressure = 1000 * 10 * (0.5 - " + up + ")\n end\nend\n");
   auto              &points = coupling->points.bodies.front().points;
   const Totals<dim>  start(points);
   const std::int64_t n_start = mpi::sum(coupling->points.n_particles(), comm);
@@ -128,8 +129,6 @@ test_drop()
   const auto        coupling = make_coupling<dim>(drop<dim>());
   auto             &points   = coupling->points.bodies.front().points;
   const Totals<dim> start(points);
-  const double      balance = energy_balance(*coupling);
-  (void)balance;
   // Short of the faces of the box.
   const double end = 0.04;
   while (coupling->time() < end)
@@ -137,8 +136,7 @@ test_drop()
   const Totals<dim> now(points);
   const auto        body   = coupling->structure.rigids.front().summary();
   const auto       &ledger = points.ledger;
-  deallog << "drop: split " << (mpi::sum(ledger.split, comm) > 0) << ", merged "
-          << (mpi::sum(ledger.merged, comm) > 0) << ", ledger is closed "
+  deallog << "drop: split " << (mpi::sum(ledger.split, comm) > 0) << ", ledger is closed "
           << (coupling->points.ledger_error() == 0) << ", ids differ " << ids_differ(points)
           << ", penetrations " << coupling->contacts.n_penetrations() << std::endl;
   deallog << "drop: mass is kept " << (std::fabs(now.mass - start.mass) < 1e-12 * start.mass)
@@ -146,9 +144,17 @@ test_drop()
           << ((now.momentum + body.mass * body.velocity - start.momentum).norm() <
               1e-10 * start.momentum.norm())
           << ", the body moves " << (body.velocity.norm() > 0.1) << std::endl;
-  deallog << "drop: centre of the water " << now.centre << ", velocity of the body "
-          << body.velocity << ", particles " << mpi::sum(coupling->points.n_particles(), comm)
-          << ", cells " << mpi::sum(coupling->points.octree.n_owned_leaves(), comm) << std::endl;
+  // The contact solver stops at 1e-4 of the speeds.
+  const auto rounded = [](const dealii::Tensor<1, dim> &vector) {
+    dealii::Tensor<1, dim> result;
+    for (int d = 0; d < dim; ++d)
+      result[d] = std::round(1000 * vector[d]) / 1000 + 0.;
+    return result;
+  };
+  deallog << "drop: centre of the water " << rounded(now.centre) << ", velocity of the body "
+          << rounded(body.velocity) << ", particles "
+          << mpi::sum(coupling->points.n_particles(), comm) << ", cells "
+          << mpi::sum(coupling->points.octree.n_owned_leaves(), comm) << std::endl;
   // Few particles in whole families of cells: it can't be much better.
   deallog << "drop: work is shared "
           << (coupling->adaptivity.imbalance(coupling->points, coupling->contacts) < 1.5)

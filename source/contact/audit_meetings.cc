@@ -123,7 +123,9 @@ PathAudit<dim>::way_off(const unsigned int end, const int known_side)
   double lowest = std::numeric_limits<double>::max();
   for (const auto &one : touched)
     lowest = std::min(lowest, side * (one.normal * way) / std::max(way.norm(), 1e-300));
-  if (lowest < 0.02)
+  // The tip of a needle is no fold: its facets look away from each other, and ahead of it is free.
+  const bool valley = in_valley(side);
+  if (lowest < 0.02 && (valley || way.norm() < 1e-6))
     {
       const auto best =
         std::max_element(touched.begin(), touched.end(), [&](const Touched &a, const Touched &b) {
@@ -133,7 +135,7 @@ PathAudit<dim>::way_off(const unsigned int end, const int known_side)
       lowest = std::sqrt(0.5);
     }
   // Farther in a valley, so as to be off its slopes.
-  else if (!in_valley(side))
+  else if (!valley)
     lowest = 1;
   return step_off * size / (lowest * way.norm()) * way;
 }

@@ -10,9 +10,11 @@ namespace coracle::contact
 {
 namespace
 {
-/// A point nearer than this part of the facet's size starts on the surface, and is thought this
-/// part of the largest facet's size there off it: nearest points are good to 1e-10 of it.
-constexpr double on_surface = 1e-8, off_surface = 1e-7;
+/// A point nearer than this part of the facet's size starts on the surface.
+constexpr double on_surface = 1e-8;
+/// It is then thought this part of the smallest facet's size there off it, and no less than this
+/// part of the largest one's: nearest points are good to 1e-10 of a facet's size.
+constexpr double off_smallest = 1e-8, off_largest = 1e-9;
 /// Planes that are collected before less clearance is asked for.
 constexpr unsigned int most_planes = 32;
 constexpr double       squeezes[]  = {1., 0.2, 0.04};
@@ -58,23 +60,25 @@ ContinuousCheck<dim>::size_of(const unsigned int facet) const
 
 template <int dim>
 double
-ContinuousCheck<dim>::largest_facet_at(const Surface<dim>       &surface,
-                                       const dealii::Point<dim> &x,
-                                       const PointOfSet         &point) const
+ContinuousCheck<dim>::way_off_surface(const Surface<dim>       &surface,
+                                      const dealii::Point<dim> &x,
+                                      const PointOfSet         &point) const
 {
-  double   result = 0;
+  double   smallest = std::numeric_limits<double>::max(), largest = 0;
   Vertices vertices;
   for (const unsigned int *f = point.first_facet; f != point.last_facet; ++f)
     {
       for (unsigned int k = 0; k < n_vertices; ++k)
         vertices[k] = nodes[surface.facets[*f].nodes[k]];
+      if (std::sqrt(nearest_on(x, vertices).distance_square) >= on_surface * size_of(*f))
+        continue;
       double size = 0;
       for (const auto &v : vertices)
         size = std::max(size, v.distance(vertices[0]));
-      if (std::sqrt(nearest_on(x, vertices).distance_square) < on_surface * size_of(*f))
-        result = std::max(result, size);
+      smallest = std::min(smallest, size);
+      largest  = std::max(largest, size);
     }
-  return result;
+  return largest > 0 ? std::max(off_smallest * smallest, off_largest * largest) : 0.;
 }
 
 template <int dim>
@@ -296,7 +300,7 @@ ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
                                       facets + candidates[s]->begin[i + 1],
                                       points[s].radius(p)};
         if (outward.norm_square() > 0)
-          begin += off_surface * largest_facet_at(surface, begin, point) * outward;
+          begin += way_off_surface(surface, begin, point) * outward;
         const auto wanted = end;
         bool       free   = true;
         near.clear();

@@ -438,6 +438,9 @@ Scene<dim>::make_points(const Profile &profile, const unsigned int n)
       for (int d = 0; d < dim; ++d)
         v[d] = drift[d] + 0.2 * random.uniform(-1, 1);
       v = speed * (v - random.uniform(0.2, 1) * normal) / 1.5;
+      // Nothing says to which of the regions at a branch a point exactly on it belongs.
+      if (profile.name == "junction" && away == 0 && std::hypot(x[0], x[1]) < 1e-6)
+        continue;
       // No overlaps to start with: they are refused in a case.
       if (away > 0 && starts_inside(profile, x + away * normal))
         continue;

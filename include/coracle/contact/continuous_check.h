@@ -111,10 +111,10 @@ private:
   };
 
   double size_of(const unsigned int facet) const;
-  /// Of the facets that the point is on at the start [m].
-  double largest_facet_at(const Surface<dim>       &surface,
-                          const dealii::Point<dim> &x,
-                          const PointOfSet         &point) const;
+  /// How far off the facets that it starts on a point is thought to be [m].
+  double way_off_surface(const Surface<dim>       &surface,
+                         const dealii::Point<dim> &x,
+                         const PointOfSet         &point) const;
   /// Adds the facets of a point that the path may meet to `near`; false if it has them all.
   bool collect(const Surface<dim>       &surface,
                const dealii::Point<dim> &begin,

@@ -154,16 +154,20 @@ template <int dim>
 void
 Octree<dim>::enumerate()
 {
-  // Order of the space-filling curve: coarse cell, then child by child.
+  // Order of the space-filling curve, through all ranks: coarse cell, then child by child.
   using NumberedCell = typename dealii::DoFHandler<dim>::active_cell_iterator;
   std::vector<NumberedCell> cells;
   for (const auto &cell : dof_handler.active_cell_iterators())
     if (!cell->is_artificial())
       cells.push_back(cell);
-  const auto curve = [](const NumberedCell &a, const NumberedCell &b) {
+  const auto &tree_of_cell = triangulation.get_coarse_cell_to_p4est_tree_permutation();
+  const auto  curve        = [&](const NumberedCell &a, const NumberedCell &b) {
     if (a->is_locally_owned() != b->is_locally_owned())
       return a->is_locally_owned();
-    return a->id() < b->id();
+    const dealii::CellId id_a = a->id(), id_b = b->id();
+    const auto           tree_a = tree_of_cell[id_a.get_coarse_cell_id()],
+               tree_b           = tree_of_cell[id_b.get_coarse_cell_id()];
+    return tree_a != tree_b ? tree_a < tree_b : id_a < id_b;
   };
   std::sort(cells.begin(), cells.end(), curve);
 
@@ -313,6 +317,14 @@ Octree<dim>::make_hanging_nodes()
       hanging[node_to_hanging[node]].parents.emplace_back(
         exchange.indices().global_to_local(parent.parent), parent.weight);
     }
+  // Sums over parents must not depend on how nodes are numbered.
+  for (HangingNode &node : hanging)
+    std::sort(node.parents.begin(), node.parents.end(), [this](const auto &a, const auto &b) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (positions[a.first][d] != positions[b.first][d])
+          return positions[a.first][d] < positions[b.first][d];
+      return false;
+    });
 }
 
 template <int dim>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <coracle/base/mpi.h>
 #include <coracle/coupling/material_point_system.h>
 
 #include <algorithm>
@@ -23,47 +22,63 @@ largest_of(const MaterialPoints<dim> &points,
   return result;
 }
 
-/// Of the sum that the particles of one leaf can give to a node, component by component.
+/// Largest of what makes bounds: particles in a leaf, and of them and of nodes component by
+/// component. The bounds themselves are products of maxima over all ranks: those of one rank's
+/// maxima would depend on who has what.
+struct Maxima
+{
+  double in_leaf = 0, mass = 0, velocity = 0, volume_per_size = 0, stress = 0, body_force = 0,
+         velocity_on_nodes = 0;
+};
+
+/// Affine velocities act over an arm of two cells.
 template <int dim>
-typename NodalField<dim>::Bounds
-bounds_of(const Octree<dim>            &octree,
-          const MaterialPointBody<dim> &body,
-          const double                  velocity_on_nodes)
+constexpr double arm = 2. * dim;
+
+template <int dim>
+void
+take(const Octree<dim> &octree, const MaterialPointBody<dim> &body, Maxima &maxima)
 {
   using Layout       = ParticleLayout<dim>;
   const auto &points = body.points;
   const auto &layout = points.layout();
-  // Affine velocities: all components, over an arm of two cells; what nodes give is at most
-  // 2^dim velocities over a cell.
-  constexpr double arm  = 2. * dim;
-  const double on_nodes = velocity_on_nodes * (layout.affine < 0 ? 3. : 3. + 2. * (1 << dim) * arm);
-  double       most = 0, mass = 0, velocity = 0, volume_per_size = 0, stress = 0, body_force = 0;
   for (const unsigned int leaf : points.occupied_cells())
     {
       const unsigned int begin = points.cell_begin()[leaf], end = points.cell_begin()[leaf + 1];
-      most = std::max<double>(most, end - begin);
+      maxima.in_leaf = std::max<double>(maxima.in_leaf, end - begin);
       for (unsigned int row = begin; row < end; ++row)
         {
           const double m = points.column(Layout::mass)[row];
           double       v = largest_of(points, row, Layout::velocity, dim);
           if (layout.affine >= 0)
-            v += arm * octree.size(leaf) * largest_of(points, row, layout.affine, dim * dim);
-          mass     = std::max(mass, m);
-          velocity = std::max(velocity, v);
+            v += arm<dim> * octree.size(leaf) * largest_of(points, row, layout.affine, dim * dim);
           // Pieces of it may be in cells half as large.
-          volume_per_size =
-            std::max(volume_per_size,
-                     2 * m / points.column(Layout::density)[row] / octree.size(leaf));
-          stress = std::max(stress, largest_of(points, row, Layout::stress, layout.n_stress));
-          if (body.body_force)
-            for (int d = 0; d < dim; ++d)
-              body_force =
-                std::max(body_force, m * std::abs(body.body_force->value(points.position(row), d)));
+          const double size = 0.5 * octree.size(leaf);
+          maxima.mass       = std::max(maxima.mass, m);
+          maxima.velocity   = std::max(maxima.velocity, v);
+          maxima.volume_per_size =
+            std::max(maxima.volume_per_size, m / points.column(Layout::density)[row] / size);
+          maxima.stress =
+            std::max(maxima.stress, largest_of(points, row, Layout::stress, layout.n_stress));
+          for (int d = 0; d < dim && body.body_force; ++d)
+            maxima.body_force =
+              std::max(maxima.body_force,
+                       m * std::abs(body.body_force->value(points.position(row), d)));
         }
     }
+}
+
+/// Of the sum that the particles of one leaf can give to a node, component by component.
+template <int dim>
+typename NodalField<dim>::Bounds
+bounds_of(const Maxima &of_all_ranks)
+{
+  const Maxima &m = of_all_ranks;
+  // Old velocity, its change, and the node's own with gradients of 2^dim velocities over a cell.
+  const double velocity = m.velocity + (3. + 2. * (1 << dim) * arm<dim>)*m.velocity_on_nodes;
   // Three components, each with the change that makes a mean pressure of it.
-  const double force = volume_per_size * 6. * stress + body_force;
-  return {most * mass, most * mass * (velocity + on_nodes), most * force, 1};
+  const double force = 6. * m.volume_per_size * m.stress + m.body_force;
+  return {m.in_leaf * m.mass, m.in_leaf * m.mass * velocity, m.in_leaf * force, 1};
 }
 } // namespace
 
@@ -100,24 +115,27 @@ MaterialPointSystem<dim>::bound_sums(const double time)
     return;
   // Leaves around a node and around those that hang on it, and pieces from beyond.
   constexpr double leaves_of_a_node = 1 << (2 * dim + 2);
-  int              place            = 0;
+  unsigned int     place            = 0;
   for (auto &f : fields)
     {
-      const double velocity =
-        mpi::max(f.largest_velocity(), octree.triangulation.get_communicator());
-      typename NodalField<dim>::Bounds bounds;
-      int                              n_bodies = 0;
+      Maxima maxima;
+      int    n_bodies = 0;
       for (auto &body : bodies)
-        if (int(body.field) == place)
+        if (body.field == place)
           {
             if (body.body_force)
               body.body_force->set_time(time);
-            const auto own  = bounds_of(octree, body, velocity);
-            bounds.mass     = std::max(bounds.mass, own.mass);
-            bounds.momentum = std::max(bounds.momentum, own.momentum);
-            bounds.force    = std::max(bounds.force, own.force);
+            take(octree, body, maxima);
             ++n_bodies;
           }
+      maxima.velocity_on_nodes = f.largest_velocity();
+      MPI_Allreduce(MPI_IN_PLACE,
+                    &maxima,
+                    sizeof(Maxima) / sizeof(double),
+                    MPI_DOUBLE,
+                    MPI_MAX,
+                    octree.triangulation.get_communicator());
+      auto bounds   = bounds_of<dim>(maxima);
       bounds.number = leaves_of_a_node * std::max(1, n_bodies);
       f.bound(bounds);
       ++place;

@@ -20,7 +20,7 @@ StructureSystem<dim>::StructureSystem(const Parameters             &root,
       const Parameters  body = bodies.section(name);
       const std::string kind = body.choice("Kind");
       if (kind == "solid")
-        solids.emplace_back(body, materials, gravity, reproducible, comm);
+        solids.emplace_back(body, materials, gravity, comm, reproducible);
       else if (kind == "rigid")
         rigids.emplace_back(body, gravity, comm);
     }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <coracle/base/mpi.h>
 #include <coracle/grid/nodal_field.h>
 
 namespace coracle
@@ -61,23 +60,20 @@ NodalField<dim>::clear()
 
 template <int dim>
 void
-NodalField<dim>::bound(const Bounds &here)
+NodalField<dim>::bound(const Bounds &bounds)
 {
   // Nodes of leaves around a node hang on it, with weights that are multiples of 2^-6 at least.
-  constexpr int  bits_of_weights = 6;
-  double         all[4]          = {here.mass, here.momentum, here.force, here.number};
-  const MPI_Comm comm            = octree.triangulation.get_communicator();
-  MPI_Allreduce(MPI_IN_PLACE, all, 4, MPI_DOUBLE, MPI_MAX, comm);
-  const int  bits = bits_of_weights + static_cast<int>(std::ceil(std::log2(std::max(1., all[3]))));
-  const auto set  = [&](const unsigned int place, const double largest) {
+  constexpr int bits_of_weights = 6;
+  const int     bits = bits_of_weights + static_cast<int>(std::ceil(std::log2(bounds.number)));
+  const auto    set  = [&](const unsigned int place, const double largest) {
     high_grid[place] = SumGrid(largest, bits);
     low_grid[place]  = SumGrid(high_grid[place].largest_rest(), bits);
   };
-  set(Gathered::mass, all[0]);
+  set(Gathered::mass, bounds.mass);
   for (int d = 0; d < dim; ++d)
     {
-      set(Gathered::momentum + d, all[1]);
-      set(Gathered::force + d, all[2]);
+      set(Gathered::momentum + d, bounds.momentum);
+      set(Gathered::force + d, bounds.force);
     }
   rests.resize(n_records());
   std::fill(rests.begin(), rests.end(), NodeRecord());

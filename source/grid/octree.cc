@@ -160,14 +160,11 @@ Octree<dim>::enumerate()
   for (const auto &cell : dof_handler.active_cell_iterators())
     if (!cell->is_artificial())
       cells.push_back(cell);
-  const auto &tree_of_cell = triangulation.get_coarse_cell_to_p4est_tree_permutation();
-  const auto  curve        = [&](const NumberedCell &a, const NumberedCell &b) {
+  // Coarse cells of ids are p4est's trees.
+  const auto curve = [](const NumberedCell &a, const NumberedCell &b) {
     if (a->is_locally_owned() != b->is_locally_owned())
       return a->is_locally_owned();
-    const dealii::CellId id_a = a->id(), id_b = b->id();
-    const auto           tree_a = tree_of_cell[id_a.get_coarse_cell_id()],
-               tree_b           = tree_of_cell[id_b.get_coarse_cell_id()];
-    return tree_a != tree_b ? tree_a < tree_b : id_a < id_b;
+    return a->id() < b->id();
   };
   std::sort(cells.begin(), cells.end(), curve);
 

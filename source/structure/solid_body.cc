@@ -46,8 +46,8 @@ template <int dim>
 SolidBody<dim>::SolidBody(const Parameters      &body,
                           const MaterialLibrary &materials,
                           const Vector          &gravity,
-                          const bool             reproducible,
-                          MPI_Comm               comm)
+                          MPI_Comm               comm,
+                          const bool             reproducible)
   : StructuralBody<dim>(body,
                         std::make_unique<const StructureMesh<dim>>(body.section("Mesh"), comm))
   , touches_itself(body.flag("Self contact"))

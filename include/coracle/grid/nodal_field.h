@@ -54,13 +54,14 @@ public:
   void make_reproducible() { is_reproducible = true; }
   bool reproducible() const { return is_reproducible; }
 
-  /// No summand of this rank is larger; `number` bounds how many there may be at a node.
+  /// No summand is larger on any rank; `number` bounds how many there may be at a node.
   struct Bounds
   {
     double mass = 0, momentum = 0, force = 0, number = 1;
   };
-  /// Before nodes gather, if that is to be reproducible. Collective.
-  void bound(const Bounds &here);
+  /// Before nodes gather, if that is to be reproducible: the same on all ranks and on any number of
+  /// them.
+  void bound(const Bounds &bounds);
   /// Largest component of what nodes on this rank have as velocity and change of it [m/s].
   double largest_velocity() const;
 

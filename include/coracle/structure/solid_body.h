@@ -41,8 +41,8 @@ public:
   SolidBody(const Parameters             &body,
             const MaterialLibrary        &materials,
             const dealii::Tensor<1, dim> &gravity,
-            const bool                    reproducible,
-            MPI_Comm                      comm);
+            MPI_Comm                      comm,
+            const bool                    reproducible = false);
 
   /// Of this rank's elements as they are now, infinite without any [s]. Multiply by a safety
   /// factor.

@@ -195,7 +195,7 @@ MaterialPointSystem<dim>::gather(const double time, const double dt)
       energy.damping += damped;
       energy.kinetic -= damped;
     }
-  bound_sums(time);
+  bound_sums(time, false);
   for (auto &body : bodies)
     particles_to_grid(octree,
                       body.points,
@@ -214,7 +214,7 @@ MaterialPointSystem<dim>::gather(const double time, const double dt)
       for (auto &body : bodies)
         if (body.stress_update == StressUpdate::usf)
           update_stress(body, field(body).motion(), NodalField<dim>::Motion::velocity, time, dt);
-      bound_sums(time);
+      bound_sums(time, false);
       for (auto &body : bodies)
         if (gives_force_later(body))
           particles_to_grid(octree, body.points, body.transfer, Give::force, field(body));
@@ -324,7 +324,7 @@ MaterialPointSystem<dim>::move(const double dt)
       energy.transfer += books.given - books.gathered;
       f.clear_momentum();
     }
-  bound_sums(0);
+  bound_sums(0, true);
   // Lost to the grid and back: (particles - gathered) before, (given - particles) after the step.
   energy.transfer += energy.kinetic;
   energy.kinetic = 0;

@@ -107,8 +107,9 @@ private:
                                  const unsigned int      place,
                                  const double            time,
                                  const double            dt);
-  /// For sums on nodes that are to be reproducible. Collective.
-  void bound_sums(const double time);
+  /// For sums on nodes that are to be reproducible: of what particles have, and of what they take
+  /// from nodes that have moved. Collective.
+  void bound_sums(const double time, const bool after_nodes_moved);
   /// What all ranks have together, on rank 0, and zero elsewhere. Collective.
   double on_first_rank(const ExactSum &sum) const;
   double kinetic_energy(const MaterialPointBody<dim> &body) const

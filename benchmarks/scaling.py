@@ -9,6 +9,7 @@ strong, a slab of fixed thickness; weak, one whose thickness grows with the rank
 told is the difference over the steps between, so that set-up is left out:
 
     ms a step     wall-clock time of the step's lines of the timing table, and of its parts
+    processor     user time of all ranks, ms a step; what ranks spend waiting is in it in part
     messages, kB  that all ranks hand to MPI a step, counted by benchmarks/count_messages.cc (target count_messages) in
                   a run of its own: point to point, reductions, all-to-all, other collectives
 
@@ -18,7 +19,9 @@ import argparse
 import os
 import pathlib
 import re
+import resource
 import subprocess
+import sys
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 PARTS = {
@@ -30,7 +33,7 @@ KINDS = ["message", "reduction", "all to all", "other collective"]
 
 
 def settings(options, thickness, end, folder):
-    z = f"{thickness} mm"
+    z = f"{1e-3 * thickness:g}"
     return {
         "Grid/Upper corner": f"2, 1.6, {z}",
         "Bodies/water/Upper corner": f"2, 1, {z}",
@@ -57,12 +60,17 @@ def run(options, n_ranks, thickness, end, count):
         launch += ["-x", f"LD_PRELOAD={options.build / 'benchmarks/libcount_messages.so'}"]
     environment = {**os.environ, "OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
                    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    text = subprocess.run(launch + arguments, env=environment, capture_output=True, text=True, check=True).stdout
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run(launch + arguments, env=environment, capture_output=True, text=True)
+    if done.returncode not in (0, 1):
+        sys.exit(f"{' '.join(launch + arguments)}\nends with {done.returncode}:\n{done.stdout}{done.stderr}")
+    text = done.stdout
+    processor = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     steps = int(re.search(r"^(\d+) steps to", text, re.M).group(1))
     particles = int(re.search(r"particles +(\d+) present", text).group(1))
     seconds = {name.strip(): float(s) for name, s in re.findall(r"^  ([a-z ]+?) {2,}\d+ +([\d.]+) +[\d.]+ %", text, re.M)}
     sent = {kind: [float(x) for x in numbers.split()] for kind, numbers in re.findall(r"^MPI, ([a-z ]+): (.*)$", text, re.M)}
-    return steps, particles, seconds, sent
+    return steps, particles, {**seconds, "processor": processor}, sent
 
 
 def per_step(options, n_ranks, thickness, count):
@@ -75,14 +83,14 @@ def per_step(options, n_ranks, thickness, count):
 
 def table(options, title, thickness_of):
     print(f"\n{title}\n")
-    print("| ranks | particles | ms a step | particles' | contact's | rest | " + " | ".join(f"{k}: number, kB" for k in KINDS) +
+    print("| ranks | particles | ms a step | particles' | contact's | rest | processor | " + " | ".join(f"{k}: number, kB" for k in KINDS) +
           " | most of a rank: messages, kB |")
-    print("|" + "---|" * (7 + len(KINDS)))
+    print("|" + "---|" * (8 + len(KINDS)))
     for n_ranks in options.ranks:
         particles, seconds, _ = per_step(options, n_ranks, thickness_of(n_ranks), False)
         sent = per_step(options, n_ranks, thickness_of(n_ranks), True)[2]
         parts = [1e3 * sum(seconds.get(name, 0) for name in names) for names in PARTS.values()]
-        cells = [f"{n_ranks}", f"{particles}", f"{sum(parts):.2f}"] + [f"{part:.2f}" for part in parts]
+        cells = [f"{n_ranks}", f"{particles}", f"{sum(parts):.2f}"] + [f"{part:.2f}" for part in [*parts, 1e3 * seconds["processor"]]]
         cells += [f"{sent[kind][0]:.1f}, {sent[kind][1] / 1e3:.1f}" for kind in KINDS]
         cells += [f"{sent['message'][2]:.1f}, {sent['message'][3] / 1e3:.1f}"]
         print("| " + " | ".join(cells) + " |", flush=True)

@@ -109,7 +109,7 @@ MaterialPointSystem<dim>::on_first_rank(const ExactSum &sum) const
 
 template <int dim>
 void
-MaterialPointSystem<dim>::bound_sums(const double time)
+MaterialPointSystem<dim>::bound_sums(const double time, const bool after_nodes_moved)
 {
   if (!reproducible)
     return;
@@ -128,7 +128,8 @@ MaterialPointSystem<dim>::bound_sums(const double time)
             take(octree, body, maxima);
             ++n_bodies;
           }
-      maxima.velocity_on_nodes = f.largest_velocity();
+      if (after_nodes_moved)
+        maxima.velocity_on_nodes = f.largest_velocity();
       MPI_Allreduce(MPI_IN_PLACE,
                     &maxima,
                     sizeof(Maxima) / sizeof(double),
@@ -146,6 +147,6 @@ template void   MaterialPointSystem<2>::make_reproducible();
 template void   MaterialPointSystem<3>::make_reproducible();
 template double MaterialPointSystem<2>::on_first_rank(const ExactSum &) const;
 template double MaterialPointSystem<3>::on_first_rank(const ExactSum &) const;
-template void   MaterialPointSystem<2>::bound_sums(const double);
-template void   MaterialPointSystem<3>::bound_sums(const double);
+template void   MaterialPointSystem<2>::bound_sums(const double, const bool);
+template void   MaterialPointSystem<3>::bound_sums(const double, const bool);
 } // namespace coracle

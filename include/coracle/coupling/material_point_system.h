@@ -44,6 +44,7 @@ public:
   /// Results do not depend on the ranks from now on, bit by bit: particles are sorted in every
   /// step, and sums on nodes are exact. Before the first step.
   void make_reproducible();
+
   /// Mass, momentum, internal and external force to the nodes of each field.
   void gather(const double time, const double dt);
   /// Velocities of nodes without contact.
@@ -107,8 +108,9 @@ private:
                                  const unsigned int      place,
                                  const double            time,
                                  const double            dt);
-  /// For sums on nodes that are to be reproducible. Collective.
-  void bound_sums(const double time);
+  /// For sums on nodes that are to be reproducible: of what particles have, and of what they take
+  /// from nodes that have moved. Collective.
+  void bound_sums(const double time, const bool after_nodes_moved);
   /// What all ranks have together, on rank 0, and zero elsewhere. Collective.
   double on_first_rank(const ExactSum &sum) const;
   double kinetic_energy(const MaterialPointBody<dim> &body) const

@@ -4,6 +4,8 @@
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/point_cloud.h>
 
+#include <cstring>
+
 namespace coracle::meshless
 {
 /**
@@ -23,11 +25,19 @@ public:
 
   /// Rows behind the own ones become what their owners have; the column is resized to fit.
   template <typename T>
-  void update(std::vector<T> &column) const;
+  void update(std::vector<T> &column) const
+  {
+    column.resize(n_own_rows + n_copies());
+    receive(column, lent, borrowed, [](T &row, const T &value) { row = value; });
+  }
 
   /// What copies hold is added to their owners' rows, in the order of the ranks, and becomes zero.
   template <typename T>
-  void sum_to_owners(std::vector<T> &column) const;
+  void sum_to_owners(std::vector<T> &column) const
+  {
+    receive(column, borrowed, lent, [](T &row, const T &value) { row += value; });
+    std::fill(column.begin() + n_own_rows, column.end(), T());
+  }
 
   std::size_t n_own() const { return n_own_rows; }
   std::size_t n_copies() const { return owner_of_copy.size(); }
@@ -37,9 +47,32 @@ public:
 private:
   using Rows = std::map<unsigned int, std::vector<unsigned int>>;
 
-  /// Values of rows here to the rows that answer to them there.
   template <typename T, typename Take>
-  void send(const std::vector<T> &column, const Rows &from, const Rows &to, const Take &take) const;
+  void receive(std::vector<T> &column, const Rows &from, const Rows &to, const Take &take) const
+  {
+    static_assert(std::is_trivially_copyable_v<T>, "values travel as bytes");
+    std::map<unsigned int, mpi::Buffer> sent, received;
+    for (const auto &[rank, rows] : from)
+      {
+        sent[rank].resize(rows.size() * sizeof(T));
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          std::memcpy(&sent[rank][i * sizeof(T)], &column[rows[i]], sizeof(T));
+      }
+    for (const auto &[rank, rows] : to)
+      received[rank].resize(rows.size() * sizeof(T));
+    exchange(sent, received);
+    for (const auto &[rank, rows] : to)
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        {
+          T value;
+          std::memcpy(&value, &received[rank][i * sizeof(T)], sizeof(T));
+          take(column[rows[i]], value);
+        }
+  }
+
+  /// Both sides know who sends and how much.
+  void exchange(std::map<unsigned int, mpi::Buffer> &sent,
+                std::map<unsigned int, mpi::Buffer> &received) const;
 
   MPI_Comm    comm;
   std::size_t n_own_rows = 0;

@@ -12,11 +12,23 @@ namespace coracle::meshless
  * its quadrature points. An object is set to one element after the other and
  * allocates only for the largest.
  *
- * On a simplex they are the linear functions, gradients are the same at all
- * points, and there is one quadrature point (is_constant()).
+ * With the Voronoi cell that x would have among the element's nodes, s_i the
+ * length or area of its face towards node i and h_i the distance to the node,
  *
- * Source: Del Pin, Idelsohn, Onate & Calvo (2003), section 2; Belikov and
- * others (1997), The non-Sibsonian interpolation.
+ *   N_i = (s_i / h_i) / sum_j (s_j / h_j).
+ *
+ * The cell's corners are the centres of spheres through x and the nodes of one
+ * facet of the element. Where the nodes are on one sphere that is the Voronoi
+ * cell; where they are so only within the tolerance of merging, it is its smooth
+ * continuation, which still gives back linear functions exactly and is linear on
+ * facets, so that neighbours fit.
+ *
+ * On a simplex these are the linear functions: one quadrature point. Elsewhere
+ * each simplex of the element has a rule of degree two, so that squares and cubes
+ * (where the functions are bi- and trilinear) have exact integrals of gradients.
+ *
+ * Source: Del Pin, Idelsohn, Onate & Calvo (2003), section 2; Belikov and others
+ * (1997), The non-Sibsonian interpolation; Christ, Friedberg & Lee (1982).
  */
 template <int dim>
 class LaplaceShape
@@ -40,10 +52,37 @@ public:
     return gradients[q * n + i];
   }
 
+  /// Values and gradients of all nodes at a point inside the element, which must not be a simplex.
+  void evaluate(const dealii::Point<dim> &x, double *value, dealii::Tensor<1, dim> *gradient) const;
+
 private:
+  /// A facet of the element: nodes, outward unit normal, and its circle (in 2-D, its ends).
+  struct Facet
+  {
+    std::array<unsigned int, dim> node;
+    dealii::Tensor<1, dim>        normal;
+    dealii::Point<dim>            center;
+    double                        radius_square;
+  };
+
+  void set_simplex(const double volume);
+  void set_quadrature(const PointCloud<dim>   &points,
+                      const Tessellation<dim> &tessellation,
+                      const unsigned int       element);
+  void set_facets(const Tessellation<dim> &tessellation, const unsigned int element);
+  void pair_facets();
+
   unsigned int                        n = 0;
+  std::vector<dealii::Point<dim>>     nodes;
   std::vector<double>                 weights, values;
   std::vector<dealii::Point<dim>>     quadrature;
   std::vector<dealii::Tensor<1, dim>> gradients;
+
+  std::vector<Facet> facets;
+  /// In 3-D: a node, and two facets that follow each other around it.
+  std::vector<std::array<unsigned int, 3>> pairs, unpaired;
+
+  mutable std::vector<dealii::Point<dim>>     corners;
+  mutable std::vector<dealii::Tensor<1, dim>> slides, faces;
 };
 } // namespace coracle::meshless

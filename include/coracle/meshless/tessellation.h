@@ -90,7 +90,6 @@ struct Tessellation
  * Calvo & Onate (2003), Polyhedrization of an arbitrary 3D point set, CMAME 192.
  */
 template <int dim>
-Tessellation<dim> tessellate(const PointCloud<dim>     &points,
-                             const TessellationOptions &options,
-                             const MPI_Comm             comm);
+Tessellation<dim>
+tessellate(const PointCloud<dim> &points, const TessellationOptions &options, const MPI_Comm comm);
 } // namespace coracle::meshless

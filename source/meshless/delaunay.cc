@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file of the room that includes CGAL.
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Delaunay_triangulation_cell_base_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <coracle/meshless/delaunay.h>
+
+namespace coracle::meshless
+{
+namespace
+{
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// CGAL's names for the same things in the plane and in space.
+template <int dim>
+struct Library;
+
+template <>
+struct Library<2>
+{
+  using Vertex        = CGAL::Triangulation_vertex_base_with_info_2<unsigned int, Kernel>;
+  using Face          = CGAL::Triangulation_face_base_with_info_2<unsigned int, Kernel>;
+  using Data          = CGAL::Triangulation_data_structure_2<Vertex, Face>;
+  using Triangulation = CGAL::Delaunay_triangulation_2<Kernel, Data>;
+  using Point         = Kernel::Point_2;
+
+  static Point point(const dealii::Point<2> &p) { return {p[0], p[1]}; }
+  static auto  cells(const Triangulation &t) { return t.finite_face_handles(); }
+  static auto  nearest(const Triangulation &t, const Point &p) { return t.nearest_vertex(p); }
+};
+
+template <>
+struct Library<3>
+{
+  using Vertex        = CGAL::Triangulation_vertex_base_with_info_3<unsigned int, Kernel>;
+  using Base          = CGAL::Delaunay_triangulation_cell_base_3<Kernel>;
+  using Cell          = CGAL::Triangulation_cell_base_with_info_3<unsigned int, Kernel, Base>;
+  using Data          = CGAL::Triangulation_data_structure_3<Vertex, Cell>;
+  using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Data>;
+  using Point         = Kernel::Point_3;
+
+  static Point point(const dealii::Point<3> &p) { return {p[0], p[1], p[2]}; }
+  static auto  cells(const Triangulation &t) { return t.finite_cell_handles(); }
+  static auto  nearest(const Triangulation &t, const Point &p) { return t.nearest_vertex(p); }
+};
+
+/// Which points have no vertex of their own?
+template <int dim>
+void
+find_coincident(const std::vector<dealii::Point<dim>>      &points,
+                const typename Library<dim>::Triangulation &triangulation,
+                DelaunayCells<dim>                         &result)
+{
+  result.n_coincident = points.size() - triangulation.number_of_vertices();
+  if (result.n_coincident == 0)
+    return;
+  std::vector<bool> has_vertex(points.size(), false);
+  for (const auto &vertex : triangulation.finite_vertex_handles())
+    has_vertex[vertex->info()] = true;
+  const unsigned int left_out =
+    std::find(has_vertex.begin(), has_vertex.end(), false) - has_vertex.begin();
+  const auto vertex = Library<dim>::nearest(triangulation, Library<dim>::point(points[left_out]));
+  result.coincident = {vertex->info(), left_out};
+}
+} // namespace
+
+template <int dim>
+DelaunayCells<dim>
+delaunay(const std::vector<dealii::Point<dim>> &points)
+{
+  using Point = typename Library<dim>::Point;
+  std::vector<std::pair<Point, unsigned int>> numbered;
+  numbered.reserve(points.size());
+  for (unsigned int i = 0; i < points.size(); ++i)
+    numbered.emplace_back(Library<dim>::point(points[i]), i);
+
+  DelaunayCells<dim> result;
+  // Inserts along a space-filling curve, so that each point is located from its neighbour.
+  typename Library<dim>::Triangulation triangulation(numbered.begin(), numbered.end());
+  find_coincident(points, triangulation, result);
+  if (triangulation.dimension() < dim)
+    return result;
+
+  unsigned int n_cells = 0;
+  for (const auto &cell : Library<dim>::cells(triangulation))
+    cell->info() = n_cells++;
+  result.node.resize(n_cells);
+  result.neighbor.resize(n_cells);
+  for (const auto &cell : Library<dim>::cells(triangulation))
+    for (int i = 0; i <= dim; ++i)
+      {
+        const auto beyond            = cell->neighbor(i);
+        result.node[cell->info()][i] = cell->vertex(i)->info();
+        result.neighbor[cell->info()][i] =
+          triangulation.is_infinite(beyond) ? DelaunayCells<dim>::none : beyond->info();
+      }
+  return result;
+}
+
+template DelaunayCells<2> delaunay(const std::vector<dealii::Point<2>> &);
+template DelaunayCells<3> delaunay(const std::vector<dealii::Point<3>> &);
+} // namespace coracle::meshless

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exceptions.h>
+#include <coracle/base/mpi.h>
+#include <coracle/meshless/merging.h>
+#include <coracle/meshless/tessellation.h>
+
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+
+namespace coracle::meshless
+{
+namespace
+{
+template <int dim>
+void
+refuse_coincident(const DelaunayCells<dim> &cells, const PointCloud<dim> &points)
+{
+  if (cells.n_coincident == 0)
+    return;
+  const auto [a, b] = cells.coincident;
+  std::ostringstream details;
+  details << cells.n_coincident << " points of the meshless fluid are at the place of another; ids "
+          << std::min(points.id[a], points.id[b]) << " and " << std::max(points.id[a], points.id[b])
+          << " at (" << points.position[a] << ") m";
+  throw RunFailure("points of the meshless fluid coincide",
+                   details.str(),
+                   "generate no point twice, also not on walls that meet, or take smaller steps");
+}
+
+/// From cells and the elements they belong to, to the tessellation.
+template <int dim>
+class Builder
+{
+public:
+  Builder(const Cells<dim>           &cells,
+          std::vector<unsigned int> &&element_of_cell,
+          const PointCloud<dim>      &points,
+          const TessellationOptions  &options)
+    : cells(cells), element(std::move(element_of_cell)), points(points), options(options)
+  {}
+
+  Tessellation<dim> build()
+  {
+    list_members();
+    select();
+    sort_assembled();
+    result.on_free_surface.assign(points.size(), 0);
+    result.has_element.assign(points.size(), 0);
+    mark_points();
+    for (const unsigned int name : assembled)
+      append(name);
+    return std::move(result);
+  }
+
+private:
+  using Nodes                        = std::array<unsigned int, dim + 1>;
+  static constexpr unsigned int none = Cells<dim>::none;
+
+  bool lower(const unsigned int a, const unsigned int b) const
+  {
+    return points.id[a] < points.id[b];
+  }
+
+  /// Cells by element: those of the element named c are member[first[c]] to member[first[c + 1]].
+  void list_members()
+  {
+    first.assign(cells.size() + 1, 0);
+    for (const unsigned int e : element)
+      if (e != none)
+        ++first[e + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    member.resize(first.back());
+    std::vector<unsigned int> next(first.begin(), first.end() - 1);
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      if (element[c] != none)
+        member[next[element[c]]++] = c;
+  }
+
+  /// The nodes of an element by rising id.
+  void collect_nodes(const unsigned int name)
+  {
+    nodes.clear();
+    for (unsigned int m = first[name]; m < first[name + 1]; ++m)
+      nodes.insert(nodes.end(), cells.node[member[m]].begin(), cells.node[member[m]].end());
+    std::sort(nodes.begin(), nodes.end(), [&](const auto a, const auto b) { return lower(a, b); });
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
+
+  bool is_kept(const unsigned int name) const
+  {
+    // The largest sphere: which cell gives the element its name depends on the order of points.
+    double radius = 0., spacing = 0.;
+    for (unsigned int m = first[name]; m < first[name + 1]; ++m)
+      if (!is_sliver(member[m]) || first[name + 1] - first[name] == 1)
+        radius = std::max(radius, cells.radius[member[m]]);
+    bool has_fluid = false;
+    for (const unsigned int node : nodes)
+      {
+        spacing += points.spacing[node];
+        has_fluid = has_fluid || points.kind[node] == PointKind::fluid;
+      }
+    return has_fluid && radius <= options.alpha * spacing / nodes.size();
+  }
+
+  bool is_sliver(const unsigned int c) const
+  {
+    return cells.height[c] <= options.merge_tolerance * cells.spacing[c];
+  }
+
+  /// Drop elements that are too large or all wall, and find those that this rank assembles.
+  void select()
+  {
+    kept.assign(cells.size(), false);
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      if (first[c + 1] > first[c])
+        {
+          collect_nodes(c);
+          kept[c] = is_kept(c);
+          if (kept[c] && nodes[0] < points.n_own)
+            assembled.push_back(c);
+        }
+  }
+
+  /// By the ids of their cells' nodes.
+  void sort_assembled()
+  {
+    const auto before = [&](const unsigned int a, const unsigned int b) {
+      return std::lexicographical_compare(cells.node[a].begin(),
+                                          cells.node[a].end(),
+                                          cells.node[b].begin(),
+                                          cells.node[b].end(),
+                                          [&](const auto i, const auto j) { return lower(i, j); });
+    };
+    for (const unsigned int name : assembled)
+      std::sort(member.begin() + first[name], member.begin() + first[name + 1], before);
+    std::sort(assembled.begin(), assembled.end(), [&](const unsigned int a, const unsigned int b) {
+      return before(member[first[a]], member[first[b]]);
+    });
+  }
+
+  bool is_kept_cell(const unsigned int c) const
+  {
+    return c != none && element[c] != none && kept[element[c]];
+  }
+
+  void mark_points()
+  {
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      if (is_kept_cell(c))
+        for (unsigned int i = 0; i <= dim; ++i)
+          {
+            result.has_element[cells.node[c][i]] = 1;
+            if (!is_kept_cell(cells.neighbor[c][i]))
+              for (const unsigned int node : facet_of<dim>(cells.node[c], i))
+                result.on_free_surface[node] = 1;
+          }
+    for (unsigned int i = 0; i < points.size(); ++i)
+      if (points.kind[i] == PointKind::wall)
+        result.on_free_surface[i] = 0;
+      else if (!result.has_element[i])
+        result.on_free_surface[i] = 1;
+  }
+
+  void append(const unsigned int name)
+  {
+    collect_nodes(name);
+    result.node.insert(result.node.end(), nodes.begin(), nodes.end());
+    double volume = 0.;
+    for (unsigned int m = first[name]; m < first[name + 1]; ++m)
+      {
+        const unsigned int c = member[m];
+        volume += cells.volume[c];
+        // What is flat to round-off has no inside where shape functions could be evaluated.
+        if (cells.height[c] > 1e-8 * cells.spacing[c])
+          result.simplex.push_back(cells.node[c]);
+        for (unsigned int i = 0; i <= dim; ++i)
+          append_facet(name, c, i);
+      }
+    result.volume.push_back(volume);
+    result.first_node.push_back(result.node.size());
+    result.first_simplex.push_back(result.simplex.size());
+    result.first_facet.push_back(result.facet.size());
+  }
+
+  void append_facet(const unsigned int name, const unsigned int c, const unsigned int i)
+  {
+    const unsigned int beyond = cells.neighbor[c][i];
+    if (beyond != none && element[beyond] == name)
+      return;
+    const auto facet = facet_of<dim>(cells.node[c], i);
+    if (nodes.size() > dim + 1)
+      result.facet.push_back(facet);
+    if (!is_kept_cell(beyond))
+      {
+        result.boundary_facet.push_back(facet);
+        result.boundary_element.push_back(result.volume.size());
+      }
+  }
+
+  const Cells<dim>               &cells;
+  const std::vector<unsigned int> element;
+  const PointCloud<dim>          &points;
+  const TessellationOptions      &options;
+
+  std::vector<unsigned int> first, member, assembled, nodes;
+  std::vector<bool>         kept;
+  Tessellation<dim>         result;
+};
+} // namespace
+
+template <int dim>
+Tessellation<dim>
+tessellate(const PointCloud<dim> &points, const TessellationOptions &options, const MPI_Comm comm)
+{
+  auto delaunay_cells = delaunay(points.position);
+  mpi::agree([&] { refuse_coincident(delaunay_cells, points); }, comm);
+
+  const Cells<dim> cells = arrange(std::move(delaunay_cells), points);
+  const double     spacing =
+    points.size() == 0 ? 0. : *std::max_element(points.spacing.begin(), points.spacing.end());
+  const double largest_radius = (options.alpha + options.merge_tolerance) * spacing;
+  return Builder<dim>(cells, merge_cells(cells, points, options, largest_radius), points, options)
+    .build();
+}
+
+template Tessellation<2>
+tessellate(const PointCloud<2> &, const TessellationOptions &, const MPI_Comm);
+template Tessellation<3>
+tessellate(const PointCloud<3> &, const TessellationOptions &, const MPI_Comm);
+} // namespace coracle::meshless

@@ -2,6 +2,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/fluid.h>
 
+#include <algorithm>
 #include <numeric>
 #include <sstream>
 
@@ -61,7 +62,7 @@ Fluid<dim>::fill_cloud()
   points              = PointCloud<dim>();
   points.n_own        = n;
   points.position.resize(n);
-  points.spacing.assign(columns[Layout::spacing], columns[Layout::spacing] + n);
+  points.spacing.resize(n);
   points.kind.assign(n, PointKind::fluid);
   points.id.resize(n);
   velocity.resize(n);
@@ -75,6 +76,10 @@ Fluid<dim>::fill_cloud()
           velocity[i][d]        = columns[Layout::velocity + d][i];
         }
       points.id[i] = columns[Layout::id][i];
+      // Between points of the surface elements must be smaller: surfaces join once they are near,
+      // and do not fill the room between with fluid that was not there.
+      const double share = options.surface_alpha / options.tessellation.alpha;
+      points.spacing[i]  = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
       walls[i]     = columns[Layout::walls][i];
     }
 }
@@ -84,26 +89,29 @@ void
 Fluid<dim>::remesh()
 {
   const double old_kinetic = energy.kinetic;
+  next_id = mpi::max(next_id, comm);
   fill_cloud();
   halo.rebuild(points, options.tessellation.halo_width(options.spacing));
   halo.update(velocity);
   halo.update(pressure);
   halo.update(walls);
   mesh = tessellate(points, options.tessellation, comm);
+  points.spacing.assign(columns[Layout::spacing], columns[Layout::spacing] + points.n_own);
+  halo.update(points.spacing);
   rules.reinit(points, mesh);
   FluidOperators<dim>(mesh, rules, halo).lumped_volume(volume);
   find_free_surface();
   energy.kinetic = 0;
   for (std::size_t i = 0; i < points.n_own; ++i)
     energy.kinetic += 0.5 * options.density * volume[i] * velocity[i].norm_square();
-  double new_volume = mpi::sum(std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.), comm);
+  current_volume = mpi::sum(std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.), comm);
   if (initial_volume == 0)
-    initial_volume = new_volume;
+    initial_volume = current_volume;
   else
     {
       energy.transfer += old_kinetic - energy.kinetic;
       // After loading there is nothing to compare with.
-      const double change = end_volume > 0 ? new_volume - end_volume : 0.;
+      const double change = end_volume > 0 ? current_volume - end_volume : 0.;
       (change > 0 ? volume_appeared : volume_disappeared) += std::fabs(change);
     }
   end_volume = 0;
@@ -116,11 +124,15 @@ void
 Fluid<dim>::find_free_surface()
 {
   std::vector<double> n_free(points.size());
+  surface_facets.clear();
+  surface_elements.clear();
   for (const auto &facet : mesh.boundary_facet)
     {
       unsigned int common = ~0u;
       for (const unsigned int node : facet)
         common &= walls[node];
+      if (common == 0)
+        surface_facets.push_back(facet);
       if (common == 0)
         for (const unsigned int node : facet)
           n_free[node] += 1;
@@ -132,9 +144,11 @@ Fluid<dim>::find_free_surface()
     {
       isolated[i]     = !mesh.has_element[i];
       free_surface[i] = isolated[i] || n_free[i] > 0;
-      if (free_surface[i])
+      if (isolated[i])
         pressure[i] = 0;
+      columns[Layout::free][i] = free_surface[i];
     }
+  no_pressure = isolated;
   // Where the fluid fills the box, the pressure of one point is chosen.
   std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
   if (mpi::max<unsigned int>(
@@ -145,10 +159,16 @@ Fluid<dim>::find_free_surface()
       lowest = mpi::min(lowest, comm);
       for (std::size_t i = 0; i < points.n_own; ++i)
         if (points.id[i] == lowest)
-          free_surface[i] = 1;
+          no_pressure[i] = 1;
     }
   halo.update(free_surface);
   halo.update(isolated);
+  halo.update(no_pressure);
+  for (unsigned int e = 0; e < mesh.n_elements(); ++e)
+    if (std::any_of(mesh.node.begin() + mesh.first_node[e],
+                    mesh.node.begin() + mesh.first_node[e + 1],
+                    [&](const unsigned int node) { return free_surface[node]; }))
+      surface_elements.push_back(e);
   halo.update(pressure);
 }
 

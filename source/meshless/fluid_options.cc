@@ -69,6 +69,13 @@ declare_solver(Declaration &body)
                 "freely; bounds the step.",
                 1e-6,
                 1.);
+  body.quantity("Volume relaxation",
+                "0",
+                "s",
+                "",
+                "Time in which what appeared or disappeared as surfaces joined or tore is taken back, by "
+                "shrinking or swelling everywhere; 0: never.",
+                0.);
   body.quantity("Pressure tolerance",
                 "1e-9",
                 "1",
@@ -107,6 +114,14 @@ FluidOptions<dim>::declare(Declaration &body)
                 "0.87.",
                 0.6,
                 10.);
+  body.quantity("Surface alpha",
+                "0.85",
+                "1",
+                "",
+                "As Alpha, for elements whose points were all at the free surface or drops in the step "
+                "before, between the two where some were: how near surfaces come before they join.",
+                0.5,
+                10.);
   body.quantity("Merge tolerance",
                 "1e-6",
                 "1",
@@ -128,6 +143,7 @@ FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gr
   o.viscosity                    = body.quantity("Viscosity");
   o.spacing                      = body.quantity("Spacing");
   o.tessellation.alpha           = body.quantity("Alpha");
+  o.surface_alpha                = std::min(body.quantity("Surface alpha"), o.tessellation.alpha);
   o.tessellation.merge_tolerance = body.quantity("Merge tolerance");
   o.refill.enabled               = body.flag("Refill");
   o.refill.nearest               = body.quantity("Nearest points");
@@ -140,6 +156,7 @@ FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gr
   o.time_weight                  = body.quantity("Time weight");
   o.n_iterations                 = body.integer("Iterations");
   o.largest_move                 = body.quantity("Largest move");
+  o.volume_relaxation            = body.quantity("Volume relaxation");
   o.gravity                      = gravity;
   if (o.tessellation.alpha < (dim == 2 ? 0.72 : 0.88))
     throw body.error("Alpha",

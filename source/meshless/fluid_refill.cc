@@ -141,7 +141,7 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
   };
   for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int) {
     const double h     = 0.5 * (points.spacing[i] + points.spacing[j]),
-                 share = free_surface[i] && free_surface[j] ? 0.5 : 1.;
+                 share = free_surface[i] && free_surface[j] ? 0.9 : 1.;
     if (x[i].distance_square(x[j]) > std::pow(share * options.refill.nearest * h, 2))
       return;
     const unsigned int loser = rank_of(i) < rank_of(j) ? i : j;
@@ -182,6 +182,11 @@ template <int dim>
 void
 Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
 {
+  // Nothing is put into strands and sheets of one element: they tear.
+  std::vector<unsigned char> inside(mesh.n_elements(), 0);
+  for (unsigned int e = 0; e < mesh.n_elements(); ++e)
+    for (unsigned int i = mesh.first_node[e]; i < mesh.first_node[e + 1]; ++i)
+      inside[e] |= !free_surface[mesh.node[i]];
   std::map<unsigned int, LongEdge> by_element;
   for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int e) {
     const double h           = 0.5 * (points.spacing[i] + points.spacing[j]);
@@ -189,7 +194,7 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
     const double length_square = x[i].distance_square(x[j]);
-    if (length_square < std::pow(limit * h, 2))
+    if (!inside[e] || length_square < std::pow(limit * h, 2))
       return;
     const bool in_order = points.id[i] < points.id[j];
     LongEdge   edge{length_square,
@@ -239,6 +244,7 @@ Fluid<dim>::insert_between(const std::array<unsigned int, 2>     &rows,
   columns[Layout::spacing][row]  = 0.5 * (points.spacing[i] + points.spacing[j]);
   columns[Layout::id][row]       = id;
   columns[Layout::walls][row]    = walls[i] & walls[j];
+  columns[Layout::free][row]     = free_surface[i] && free_surface[j];
 }
 
 template class Fluid<2>;

@@ -2,10 +2,18 @@
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/fluid.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace coracle::meshless
 {
+namespace
+{
+/// Share of E M^-1 E^T that holds pressures of the surface that nothing else determines, those of a
+/// single element: they are 0 where the pressure is linear.
+constexpr double surface_share = 1e-3;
+} // namespace
+
 template <int dim>
 double
 Fluid<dim>::step_limit() const
@@ -52,6 +60,7 @@ Fluid<dim>::move_elements(const double dt, const unsigned int iteration)
     scratch[i] = 0.5 * dt * moving[i];
   moved_rules.set_moved(rules, mesh, scratch);
   FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(moved_volume);
+  find_surface_areas();
   if (iteration == 0)
     {
       pressure_system.reinit(mesh, halo);
@@ -112,6 +121,84 @@ Fluid<dim>::diffuse(const double dt)
     }
 }
 
+// a_i, a share of each facet beside it: the derivative of the volume by the point's place.
+template <int dim>
+void
+Fluid<dim>::find_surface_areas()
+{
+  surface_area.assign(points.size(), Vector());
+  for (const auto &facet : surface_facets)
+    {
+      std::array<Vector, dim> x;
+      for (unsigned int i = 0; i < dim; ++i)
+        x[i] = points.position[facet[i]] + scratch[facet[i]];
+      Vector area;
+      if constexpr (dim == 2)
+        area = cross_product_2d(x[1] - x[0]);
+      else
+        area = 0.5 * cross_product_3d(x[1] - x[0], x[2] - x[0]);
+      for (const unsigned int node : facet)
+        surface_area[node] += area / dim;
+    }
+  halo.sum_to_owners(surface_area);
+  halo.update(surface_area);
+}
+
+/**
+ * At the free surface, the pressure is such that the elements there keep their volume too, and
+ * acts on the surface: with E u = (a_i . u_i), B becomes B - E in both equations, and
+ * S - E M^-1 B^T - B M^-1 E^T + E M^-1 E^T takes the place of S. The last term is in the matrix.
+ */
+template <int dim>
+void
+Fluid<dim>::add_surface_terms(double *result, const double *p)
+{
+  surface_pressure.assign(p, p + points.n_own);
+  halo.update(surface_pressure);
+  gradient.assign(points.size(), Vector());
+  moved_rules.for_each_of(surface_elements,
+                          mesh,
+                          [&](const unsigned int *nodes,
+                              const unsigned int  n,
+                              const double        weight,
+                              const double       *value,
+                              const Vector       *grad) {
+                            Vector slope;
+                            for (unsigned int i = 0; i < n; ++i)
+                              slope += surface_pressure[nodes[i]] * grad[i];
+                            for (unsigned int i = 0; i < n; ++i)
+                              gradient[nodes[i]] += (weight * value[i]) * slope;
+                          });
+  halo.sum_to_owners(gradient);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    {
+      pushed[i] = Vector();
+      if (no_pressure[i] || !free_surface[i])
+        continue;
+      result[i] -= surface_area[i] * gradient[i] / moved_volume[i];
+      pushed[i] = surface_pressure[i] / moved_volume[i] * surface_area[i];
+    }
+  halo.update(pushed);
+  driven.assign(points.size(), 0.);
+  moved_rules.for_each_of(surface_elements,
+                          mesh,
+                          [&](const unsigned int *nodes,
+                              const unsigned int  n,
+                              const double        weight,
+                              const double       *value,
+                              const Vector       *grad) {
+                            Vector flow;
+                            for (unsigned int i = 0; i < n; ++i)
+                              flow += value[i] * pushed[nodes[i]];
+                            for (unsigned int i = 0; i < n; ++i)
+                              driven[nodes[i]] += weight * (grad[i] * flow);
+                          });
+  halo.sum_to_owners(driven);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    if (!no_pressure[i])
+      result[i] -= driven[i];
+}
+
 template <int dim>
 void
 Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
@@ -120,22 +207,59 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
   for (std::size_t i = 0; i < points.size(); ++i)
     scratch[i] = factor * (theta * predicted[i] + (1 - theta) * velocity[i]);
   FluidOperators<dim>(mesh, moved_rules, halo).divergence(scratch, right_side);
-  pressure_system.assemble(mesh, moved_rules, {}, 1., free_surface);
+  // The rate at which volume is to change [1/s], little in a step.
+  const double swelling =
+    options.volume_relaxation > 0 ?
+      std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
+                 -1e-3,
+                 1e-3) /
+        dt :
+      0.;
+  std::vector<double> surface(points.n_own);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    if (!no_pressure[i])
+      {
+        right_side[i] += factor * swelling * moved_volume[i] - surface_area[i] * scratch[i];
+        surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_volume[i];
+      }
+  pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure);
   if (iteration == 0)
     pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
-  last_pressure_solve = pressure_system.solve(right_side, pressure, options.solver);
+  surface_pressure.resize(points.size());
+  pushed.resize(points.size());
+  last_pressure_solve =
+    pressure_system.solve(right_side,
+                          pressure,
+                          options.solver,
+                          [this](double *result, const double *p) { add_surface_terms(result, p); });
   ++pressure_solves;
   pressure_iterations += last_pressure_solve.iterations;
   unconverged_solves += !last_pressure_solve.converged;
   halo.update(pressure);
 }
 
+// Drops may leave all faces, points of the free surface those that gravity pulls them from.
+template <int dim>
+unsigned int
+Fluid<dim>::held_walls(const std::size_t row) const
+{
+  if (isolated[row])
+    return 0;
+  unsigned int held = walls[row];
+  if (free_surface[row])
+    for (unsigned int face = 0; face < 2 * dim; ++face)
+      if ((face % 2 == 0 ? 1. : -1.) * options.gravity[face / 2] > 0)
+        held &= ~(1u << face);
+  return held;
+}
+
 template <int dim>
 void
 Fluid<dim>::set_wall_velocity(const std::size_t row, Vector &v) const
 {
+  const unsigned int held = held_walls(row);
   for (unsigned int face = 0; face < 2 * dim; ++face)
-    if (walls[row] >> face & 1)
+    if (held >> face & 1)
       {
         if (options.walls[face] == Wall::stick)
           v = 0;
@@ -154,7 +278,8 @@ Fluid<dim>::correct(const double dt)
     {
       if (!isolated[i])
         {
-          corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
+          gradient[i] -= pressure[i] * surface_area[i];
+        corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
           set_wall_velocity(i, corrected[i]);
         }
       moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
@@ -173,7 +298,7 @@ Fluid<dim>::move(const double dt)
   for (std::size_t i = 0; i < points.n_own; ++i)
     {
       dealii::Point<dim> x      = points.position[i] + dt * moving[i];
-      unsigned int       on     = isolated[i] ? 0 : walls[i];
+      unsigned int       on     = held_walls(i);
       const double       before = corrected[i].norm_square();
       for (unsigned int face = 0; face < 2 * dim; ++face)
         {

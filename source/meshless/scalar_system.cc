@@ -8,12 +8,40 @@
 
 namespace coracle::meshless
 {
+namespace
+{
+using Vector = dealii::TrilinosWrappers::MPI::Vector;
+
+/// The matrix and what is added to it.
+struct Operator
+{
+  const dealii::TrilinosWrappers::SparseMatrix             &matrix;
+  const std::function<void(double *, const double *)> &addition;
+
+  void vmult(Vector &result, const Vector &x) const
+  {
+    matrix.vmult(result, x);
+    if (addition)
+      addition(result.begin(), x.begin());
+  }
+};
+
+/// A factorisation as a preconditioner.
+struct Factors
+{
+  dealii::TrilinosWrappers::SolverDirect &direct;
+
+  void vmult(Vector &result, const Vector &x) const { direct.solve(result, x); }
+};
+} // namespace
+
 template <int dim>
 void
 ScalarSystem<dim>::reinit(const Tessellation<dim> &tessellation, const Halo &halo)
 {
   multigrid.reset();
   diagonal.reset();
+  direct.reset();
   const std::uint64_t n_own = halo.n_own(), first = mpi::offset(n_own, comm);
   number.resize(n_own);
   for (std::size_t i = 0; i < n_own; ++i)
@@ -102,8 +130,13 @@ ScalarSystem<dim>::prepare(const SolverOptions &options, const Preconditioner ki
 {
   multigrid.reset();
   diagonal.reset();
+  direct.reset();
   if (is_direct(options))
-    return;
+    {
+      direct.emplace(control);
+      direct->initialize(matrix);
+      return;
+    }
   if (kind == Preconditioner::multigrid)
     {
       dealii::TrilinosWrappers::PreconditionAMG::AdditionalData data;
@@ -125,7 +158,8 @@ template <int dim>
 SolveReport
 ScalarSystem<dim>::solve(const std::vector<double> &f,
                          std::vector<double>       &x,
-                         const SolverOptions       &options)
+                         const SolverOptions       &options,
+                         const Addition            &addition)
 {
   for (std::size_t i = 0; i < fixed_rows.size(); ++i)
     {
@@ -140,30 +174,24 @@ ScalarSystem<dim>::solve(const std::vector<double> &f,
       std::fill_n(x.begin(), fixed_rows.size(), size);
       return report;
     }
-  if (is_direct(options))
+  dealii::SolverControl    limits(options.largest_iterations, options.tolerance * size);
+  dealii::SolverCG<Vector> cg(limits);
+  const Operator           system{matrix, addition};
+  try
     {
-      dealii::SolverControl                  control;
-      dealii::TrilinosWrappers::SolverDirect direct(control);
-      direct.solve(matrix, solution, right_side);
+      if (multigrid)
+        cg.solve(system, solution, right_side, *multigrid);
+      else if (direct)
+        cg.solve(system, solution, right_side, Factors{*direct});
+      else
+        cg.solve(system, solution, right_side, *diagonal);
     }
-  else
+  catch (const dealii::SolverControl::NoConvergence &)
     {
-      dealii::SolverControl    control(options.largest_iterations, options.tolerance * size);
-      dealii::SolverCG<Vector> cg(control);
-      try
-        {
-          if (multigrid)
-            cg.solve(matrix, solution, right_side, *multigrid);
-          else
-            cg.solve(matrix, solution, right_side, *diagonal);
-        }
-      catch (const dealii::SolverControl::NoConvergence &)
-        {
-          report.converged = false;
-        }
-      report.iterations = control.last_step();
-      report.residual   = control.last_value() / size;
+      report.converged = false;
     }
+  report.iterations = limits.last_step();
+  report.residual   = limits.last_value() / size;
   for (std::size_t i = 0; i < fixed_rows.size(); ++i)
     x[i] = solution.begin()[i];
   return report;

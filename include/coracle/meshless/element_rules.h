@@ -44,6 +44,21 @@ public:
       }
   }
 
+  /// The same for some elements.
+  template <typename Action>
+  void for_each_of(const std::vector<unsigned int> &elements,
+                   const Tessellation<dim>         &tessellation,
+                   const Action                    &action) const
+  {
+    for (const unsigned int e : elements)
+      {
+        const unsigned int  n     = tessellation.n_nodes(e);
+        const unsigned int *nodes = tessellation.node.data() + tessellation.first_node[e];
+        for (unsigned int q = first_point[e]; q < first_point[e + 1]; ++q)
+          action(nodes, n, weight[q], value.data() + begin[q], gradient.data() + begin[q]);
+      }
+  }
+
   /// Of all elements here [m^dim].
   double volume() const;
 

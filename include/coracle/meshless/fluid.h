@@ -12,12 +12,14 @@
 namespace coracle::meshless
 {
 /// Columns of a point's state between steps; all doubles, so that rows migrate and restart as they
-/// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on.
+/// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on; free
+/// is 1 at the free surface and in drops.
 template <int dim>
 struct FluidLayout
 {
   static constexpr int position = 0, velocity = dim, pressure = 2 * dim, spacing = 2 * dim + 1,
-                       id = 2 * dim + 2, walls = 2 * dim + 3, n_columns = 2 * dim + 4;
+                       id = 2 * dim + 2, walls = 2 * dim + 3, free = 2 * dim + 4,
+                       n_columns = 2 * dim + 5;
 };
 
 /**
@@ -131,10 +133,13 @@ public:
 private:
   void fill_cloud();
   void find_free_surface();
+  unsigned int held_walls(const std::size_t row) const;
   void set_wall_velocity(const std::size_t row, Vector &v) const;
   void move_elements(const double dt, const unsigned int iteration);
   void predict(const double time, const double dt);
   void diffuse(const double dt);
+  void find_surface_areas();
+  void add_surface_terms(double *result, const double *p);
   void solve_pressure(const double dt, const unsigned int iteration);
   void correct(const double dt);
   void move(const double dt);
@@ -158,9 +163,17 @@ private:
   /// Of the step: U*, U^1 and the velocity that moves, on own points and copies.
   std::vector<Vector> predicted, corrected, moving, gradient, scratch;
   std::vector<double> moved_volume, right_side;
+  /// Where the pressure is not solved for: drops, or one point of a fluid without a surface.
+  std::vector<unsigned char> no_pressure;
+  /// Facets of the free surface, and elements with a point of it, here.
+  std::vector<typename Tessellation<dim>::Facet> surface_facets;
+  std::vector<unsigned int>                      surface_elements;
+  /// a_i of own points and copies [m^(dim-1)].
+  std::vector<Vector> surface_area, pushed;
+  std::vector<double> surface_pressure, driven;
   Books               energy;
   std::uint64_t       next_id = 0;
-  /// Of the old elements at the end of the step [m^dim].
-  double end_volume = 0;
+  /// Now, and of the old elements at the end of the step [m^dim].
+  double current_volume = 0, end_volume = 0;
 };
 } // namespace coracle::meshless

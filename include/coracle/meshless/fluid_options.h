@@ -38,6 +38,8 @@ struct FluidOptions
   double density   = 1000; ///< [kg/m^3]
   double viscosity = 0;    ///< dynamic [Pa s]
   double spacing   = 0;    ///< h of points [m]
+  /// As alpha, for elements whose points were all at the free surface in the step before.
+  double              surface_alpha = 0.85;
   TessellationOptions tessellation;
   RefillOptions       refill;
   SolverOptions       solver;
@@ -45,6 +47,8 @@ struct FluidOptions
   double time_weight = 1;
   /// Solutions of a step, each on elements moved halfway along the motion of the one before.
   unsigned int n_iterations = 2;
+  /// Time in which fluid that appeared or disappeared with new elements is taken back [s]; 0: never.
+  double volume_relaxation = 0;
   /// Share of h that a point may move in a step.
   double                                largest_move = 0.25;
   dealii::Tensor<1, dim>                gravity;

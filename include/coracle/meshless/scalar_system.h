@@ -9,7 +9,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_vector.h>
 
-#include <memory>
+#include <functional>
 #include <optional>
 
 namespace coracle::meshless
@@ -56,7 +56,7 @@ public:
   void reinit(const Tessellation<dim> &tessellation, const Halo &halo);
 
   /**
-   * @param mass  a M, by own point; empty: none
+   * @param mass  a M, by own point; empty: none. Any diagonal part will do.
    * @param b     factor of S
    * @param fixed by point and copy: unknowns that are zero
    */
@@ -69,9 +69,18 @@ public:
   /// The preconditioner for the matrix as it is now; it may serve later matrices that differ little.
   void prepare(const SolverOptions &options, const Preconditioner kind);
 
-  /// @param x start, and result; own points
-  SolveReport
-  solve(const std::vector<double> &f, std::vector<double> &x, const SolverOptions &options);
+  /// What is added to the matrix where it is applied: (result, x), by own point.
+  using Addition = std::function<void(double *, const double *)>;
+
+  /**
+   * @param x        start, and result; own points
+   * @param addition symmetric; the matrix with it must be positive. The matrix alone makes the
+   *                 preconditioner.
+   */
+  SolveReport solve(const std::vector<double> &f,
+                    std::vector<double>       &x,
+                    const SolverOptions       &options,
+                    const Addition            &addition = {});
 
   std::uint64_t n_unknowns() const { return matrix.m(); }
 
@@ -91,6 +100,8 @@ private:
   Matrix                                            matrix;
   std::optional<dealii::TrilinosWrappers::PreconditionAMG>    multigrid;
   std::optional<dealii::TrilinosWrappers::PreconditionJacobi> diagonal;
+  std::optional<dealii::TrilinosWrappers::SolverDirect>       direct;
   Vector                                            solution, right_side;
+  dealii::SolverControl                             control;
 };
 } // namespace coracle::meshless

@@ -1,68 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/meshless/laplace.h>
+#include <coracle/meshless/simplex.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace coracle::meshless
 {
-namespace
-{
 using dealii::Point;
 using dealii::Tensor;
-
-/// Points of a rule of degree two on a simplex lie here on the lines from its corners to its
-/// centre.
-template <int dim>
-constexpr double near_corner = dim == 2 ? 2. / 3. : 0.58541019662496845446;
-
-Tensor<1, 2>
-turned_right(const Tensor<1, 2> &a)
-{
-  return cross_product_2d(a);
-}
-
-double
-size_of(const std::array<Point<2>, 3> &x)
-{
-  return turned_right(x[1] - x[0]) * (x[0] - x[2]) / 2.;
-}
-
-double
-size_of(const std::array<Point<3>, 4> &x)
-{
-  return cross_product_3d(x[1] - x[0], x[2] - x[0]) * (x[3] - x[0]) / 6.;
-}
-
-/// Outward normal of a facet, its length the facet's measure.
-Tensor<1, 2>
-normal_of(const std::array<Point<2>, 2> &x)
-{
-  return turned_right(x[1] - x[0]);
-}
-
-Tensor<1, 3>
-normal_of(const std::array<Point<3>, 3> &x)
-{
-  return cross_product_3d(x[1] - x[0], x[2] - x[0]) / 2.;
-}
-
-/// The point of the facet's plane that is equally far from its nodes.
-Point<2>
-center_of(const std::array<Point<2>, 2> &x)
-{
-  return x[0] + (x[1] - x[0]) / 2.;
-}
-
-Point<3>
-center_of(const std::array<Point<3>, 3> &x)
-{
-  const auto a = x[1] - x[0], b = x[2] - x[0], c = cross_product_3d(a, b);
-  return x[0] +
-         (a.norm_square() * cross_product_3d(b, c) + b.norm_square() * cross_product_3d(c, a)) /
-           (2. * c.norm_square());
-}
-} // namespace
 
 template <int dim>
 void
@@ -87,6 +33,7 @@ LaplaceShape<dim>::reinit(const PointCloud<dim>   &points,
       gradients.resize(n * n_points());
       for (unsigned int q = 0; q < n_points(); ++q)
         evaluate(quadrature[q], &values[q * n], &gradients[q * n]);
+      make_consistent(tessellation.volume[element]);
     }
 }
 
@@ -190,8 +137,8 @@ LaplaceShape<dim>::pair_facets()
             unpaired.push_back(edge);
             continue;
           }
-        pairs.push_back({edge[1], f, (*partner)[2]});
-        pairs.push_back({edge[0], (*partner)[2], f});
+        pairs.push_back({edge[0], edge[1], f, (*partner)[2]});
+        pairs.push_back({edge[1], edge[0], (*partner)[2], f});
         *partner = unpaired.back();
         unpaired.pop_back();
       }
@@ -229,7 +176,7 @@ LaplaceShape<dim>::evaluate(const Point<dim> &x, double *value, Tensor<1, dim> *
           gradient[i] += sign * (turned_right(facets[f].normal) * (nodes[i] - x)) * slides[f];
         }
   else
-    for (const auto &[i, f, g] : pairs)
+    for (const auto &[other, i, f, g] : pairs)
       {
         const Tensor<1, dim> to_node = (nodes[i] - x) / 2., a = corners[f] - nodes[i],
                              b = corners[g] - nodes[i];

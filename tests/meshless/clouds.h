@@ -2,6 +2,7 @@
 // Point clouds for the tests of the meshless room.
 #pragma once
 
+#include <coracle/base/mpi.h>
 #include <coracle/meshless/tessellation.h>
 
 #include "../tests.h"

@@ -195,6 +195,53 @@ prism_and_pyramid()
   properties("pyramid", pyramid, one_element(pyramid));
 }
 
+/// Integrals of gradients over the elements around a point inside cancel, however elements are
+/// merged.
+template <int dim>
+void
+consistent(const std::string &name, const PointCloud<dim> &cloud, const double tolerance)
+{
+  const auto                  t = tessellate(cloud, {1.5, tolerance}, MPI_COMM_SELF);
+  std::vector<Tensor<1, dim>> sum(cloud.size());
+  LaplaceShape<dim>           shape;
+  unsigned int                polytopes = 0, inside = 0;
+  for (unsigned int e = 0; e < t.n_elements(); ++e)
+    {
+      shape.reinit(cloud, t, e);
+      polytopes += !t.is_simplex(e);
+      for (unsigned int q = 0; q < shape.n_points(); ++q)
+        for (unsigned int i = 0; i < shape.n_nodes(); ++i)
+          sum[t.node[t.first_node[e] + i]] += shape.weight(q) * shape.gradient(q, i);
+    }
+  double worst = 0.;
+  for (unsigned int i = 0; i < cloud.size(); ++i)
+    if (!t.on_free_surface[i])
+      {
+        worst = std::max(worst, sum[i].norm() / std::pow(cloud.spacing[i], dim - 1));
+        ++inside;
+      }
+  deallog << name << ' ' << dim << "-D: merged " << (polytopes > t.n_elements() / 100)
+          << ", points inside " << (inside > cloud.size() / 4) << ", forces cancel "
+          << (worst < 1e-10) << std::endl;
+}
+
+template <int dim>
+void
+forces_of_constant_pressure()
+{
+  auto cloud = grid<dim>(dim == 2 ? 12 : 7, 0.1);
+  consistent("rows", cloud, 1e-6);
+  perturb(cloud, 1e-12, 1);
+  consistent("rows, round-off", cloud, 1e-6);
+  // Rows here, flow there: squares beside triangles, cubes beside pyramids.
+  for (auto &p : cloud.position)
+    if (p[0] > 0.25)
+      p[1] += 0.03 * std::sin(30. * p[0] + 20. * p[1]);
+  consistent("rows and flow", cloud, 1e-6);
+  perturb(cloud, 0.02, 2);
+  consistent("random", cloud, 0.05);
+}
+
 int
 main(int argc, char **argv)
 {
@@ -205,6 +252,8 @@ main(int argc, char **argv)
   box<2>();
   box<3>();
   prism_and_pyramid();
+  forces_of_constant_pressure<2>();
+  forces_of_constant_pressure<3>();
   properties("random simplices",
              random<2>(100, 5),
              tessellate(random<2>(100, 5), {}, MPI_COMM_SELF));

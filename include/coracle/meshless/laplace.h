@@ -24,11 +24,15 @@ namespace coracle::meshless
  * facets, so that neighbours fit.
  *
  * On a simplex these are the linear functions: one quadrature point. Elsewhere
- * each simplex of the element has a rule of degree two, so that squares and cubes
- * (where the functions are bi- and trilinear) have exact integrals of gradients.
+ * each simplex of the element has a rule of degree two. Gradients are then shifted
+ * by a constant for each node, so that their integral over the element is that of
+ * N_i n over its surface, as Gauss's theorem demands; otherwise a constant pressure
+ * would push at points inside the fluid. (Squares and cubes need no shift.)
  *
  * Source: Del Pin, Idelsohn, Onate & Calvo (2003), section 2; Belikov and others
- * (1997), The non-Sibsonian interpolation; Christ, Friedberg & Lee (1982).
+ * (1997), The non-Sibsonian interpolation; Christ, Friedberg & Lee (1982); for the
+ * shift, Talischi and others (2015), Gradient correction for polygonal and
+ * polyhedral finite elements.
  */
 template <int dim>
 class LaplaceShape
@@ -71,6 +75,10 @@ private:
                       const unsigned int       element);
   void set_facets(const Tessellation<dim> &tessellation, const unsigned int element);
   void pair_facets();
+  void make_consistent(const double volume);
+  /// Integrals over the surface of a function times the outward normal, for each node's function.
+  void integrate_surface();
+  void integrate_planar_face(const std::vector<unsigned int> &of_face, const unsigned int face);
 
   unsigned int                        n = 0;
   std::vector<dealii::Point<dim>>     nodes;
@@ -79,8 +87,10 @@ private:
   std::vector<dealii::Tensor<1, dim>> gradients;
 
   std::vector<Facet> facets;
-  /// In 3-D: a node, and two facets that follow each other around it.
-  std::vector<std::array<unsigned int, 3>> pairs, unpaired;
+  /// In 3-D, edges as they turn around a facet: first and second node, the facet, its neighbour.
+  std::vector<std::array<unsigned int, 4>> pairs;
+  std::vector<std::array<unsigned int, 3>> unpaired;
+  std::vector<dealii::Tensor<1, dim>>      surface;
 
   mutable std::vector<dealii::Point<dim>>     corners;
   mutable std::vector<dealii::Tensor<1, dim>> slides, faces;

@@ -61,14 +61,14 @@ public:
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double share = double(id % n[d]) / (n[d] - 1);
-        x[d] = (1 - share) * box.lower_bound(d) + share * box.upper_bound(d);
+        x[d]               = (1 - share) * box.lower_bound(d) + share * box.upper_bound(d);
         id /= n[d];
       }
     return x;
   }
 
 private:
-  const dealii::BoundingBox<dim>  box;
+  const dealii::BoundingBox<dim> box;
   std::array<std::uint64_t, dim> n;
 };
 

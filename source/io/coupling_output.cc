@@ -304,7 +304,7 @@ CouplingOutput<dim>::energies(const Coupling<dim> &coupling)
   result.external_work = mpi::sum(books.external_work, comm);
   for (const auto &fluid : coupling.fluids.bodies)
     FluidOutput<dim>::add_energies(fluid, comm, result);
-  const auto add       = [&result](const auto &body) {
+  const auto add = [&result](const auto &body) {
     const auto e = body.energies();
     result.kinetic += e.kinetic;
     result.strain += e.strain;

@@ -29,7 +29,7 @@ FluidOutput<dim>::write(const double time, const meshless::Fluid<dim> &fluid)
 {
   const auto               &cloud = fluid.points;
   const std::vector<double> id(cloud.id.begin(), cloud.id.end()),
-    free = as_numbers(fluid.free_surface);
+    free         = as_numbers(fluid.free_surface);
   Field position = vector_field("position", "m", cloud.position);
   Field velocity = vector_field("velocity", "m/s", fluid.velocity);
   Field number   = scalar_field("id", "1", id);
@@ -38,9 +38,9 @@ FluidOutput<dim>::write(const double time, const meshless::Fluid<dim> &fluid)
                                   scalar_field("free_surface", "1", free)};
   points.write(time, cloud.n_own, {position, velocity, fields[0], fields[1], number});
 
-  const auto                 &mesh = fluid.mesh;
-  std::vector<double>         n_nodes;
-  std::vector<unsigned int>   cells;
+  const auto               &mesh = fluid.mesh;
+  std::vector<double>       n_nodes;
+  std::vector<unsigned int> cells;
   for (unsigned int e = 0; e < mesh.n_elements(); ++e)
     for (unsigned int s = mesh.first_simplex[e]; s < mesh.first_simplex[e + 1]; ++s)
       {
@@ -63,10 +63,19 @@ void
 FluidOutput<dim>::add_columns(Statistics &statistics, const std::string &name)
 {
   statistics.add_column(name + ".volume", "m^" + std::to_string(dim));
-  for (const char *const column :
-       {"volume_drift", "volume_appeared", "volume_disappeared", "points", "points.inserted",
-        "points.taken_out", "points.left", "points.free", "points.isolated", "elements",
-        "pressure.iterations", "pressure.residual", "pressure.unconverged"})
+  for (const char *const column : {"volume_drift",
+                                   "volume_appeared",
+                                   "volume_disappeared",
+                                   "points",
+                                   "points.inserted",
+                                   "points.taken_out",
+                                   "points.left",
+                                   "points.free",
+                                   "points.isolated",
+                                   "elements",
+                                   "pressure.iterations",
+                                   "pressure.residual",
+                                   "pressure.unconverged"})
     statistics.add_column(name + "." + column, "");
   statistics.add_vector(name + ".lowest", "m", dim);
   statistics.add_vector(name + ".highest", "m", dim);
@@ -78,7 +87,7 @@ FluidOutput<dim>::set_columns(Statistics                 &statistics,
                               const meshless::Fluid<dim> &fluid,
                               MPI_Comm                    comm)
 {
-  const auto        set = [&](const std::string &column, const double value) {
+  const auto set = [&](const std::string &column, const double value) {
     statistics.set(fluid.name() + "." + column, value);
   };
   const auto summary = fluid.summary();
@@ -131,11 +140,8 @@ BodyReport<dim>
 FluidOutput<dim>::report(const meshless::Fluid<dim> &fluid)
 {
   const auto summary = fluid.summary();
-  return {fluid.name(),
-          fluid.options.density * summary.volume,
-          summary.centre,
-          summary.velocity,
-          {}};
+  return {
+    fluid.name(), fluid.options.density * summary.volume, summary.centre, summary.velocity, {}};
 }
 
 template <int dim>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/fluid.h>
+#include <coracle/meshless/partition.h>
 
 #include <algorithm>
 #include <numeric>
@@ -79,8 +80,8 @@ Fluid<dim>::fill_cloud()
       // Between points of the surface elements must be smaller: surfaces join once they are near,
       // and do not fill the room between with fluid that was not there.
       const double share = options.surface_alpha / options.tessellation.alpha;
-      points.spacing[i]  = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
-      walls[i]     = columns[Layout::walls][i];
+      points.spacing[i] = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
+      walls[i]          = columns[Layout::walls][i];
     }
 }
 
@@ -89,8 +90,9 @@ void
 Fluid<dim>::remesh()
 {
   const double old_kinetic = energy.kinetic;
-  next_id = mpi::max(next_id, comm);
+  next_id                  = mpi::max(next_id, comm);
   fill_cloud();
+  balance();
   halo.rebuild(points, options.tessellation.halo_width(options.spacing));
   halo.update(velocity);
   halo.update(pressure);
@@ -104,17 +106,39 @@ Fluid<dim>::remesh()
   energy.kinetic = 0;
   for (std::size_t i = 0; i < points.n_own; ++i)
     energy.kinetic += 0.5 * options.density * volume[i] * velocity[i].norm_square();
+  if (initial_volume > 0)
+    energy.transfer += old_kinetic - energy.kinetic;
+  find_volume();
+}
+
+/// Points are shared out from time to time; neighbours in space are near in memory then, too.
+template <int dim>
+void
+Fluid<dim>::balance()
+{
+  const std::vector<double> weight(points.n_own, 1.);
+  if (steps_since_balance++ < steps_between_balances && imbalance(weight, comm) < 1.1)
+    return;
+  steps_since_balance = 0;
+  migrate(points, columns, partition(points, weight, comm), comm);
+  fill_cloud();
+}
+
+template <int dim>
+void
+Fluid<dim>::find_volume()
+{
   current_volume = mpi::sum(std::accumulate(mesh.volume.begin(), mesh.volume.end(), 0.), comm);
   if (initial_volume == 0)
     initial_volume = current_volume;
-  else
+  // At the start, and after loading, there is nothing to compare with.
+  if (moved_boundary)
     {
-      energy.transfer += old_kinetic - energy.kinetic;
-      // After loading there is nothing to compare with.
-      const double change = end_volume > 0 ? current_volume - end_volume : 0.;
-      (change > 0 ? volume_appeared : volume_disappeared) += std::fabs(change);
+      const auto change = volume_change(*moved_boundary, boundary_of(points, mesh), comm);
+      volume_appeared += change.appeared;
+      volume_disappeared += change.disappeared;
     }
-  end_volume = 0;
+  moved_boundary.reset();
 }
 
 // Facets whose points are all on one face of the box are wall, all other ones of the boundary are
@@ -151,8 +175,8 @@ Fluid<dim>::find_free_surface()
   no_pressure = isolated;
   // Where the fluid fills the box, the pressure of one point is chosen.
   std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
-  if (mpi::max<unsigned int>(
-        std::count(free_surface.begin(), free_surface.end(), 1) > 0, comm) == 0)
+  if (mpi::max<unsigned int>(std::count(free_surface.begin(), free_surface.end(), 1) > 0, comm) ==
+      0)
     {
       for (std::size_t i = 0; i < points.n_own; ++i)
         lowest = std::min(lowest, points.id[i]);
@@ -247,6 +271,9 @@ Fluid<dim>::serialize(Archive &archive)
   archive.same("volume_disappeared", volume_disappeared);
   archive.same("counts", counts);
   archive.same("next_id", next_id);
+  archive.same("steps_since_balance", steps_since_balance);
+  if (!archive.is_exact())
+    steps_since_balance = steps_between_balances;
   archive.same("pressure_solves", pressure_solves);
   archive.same("pressure_iterations", pressure_iterations);
   archive.same("unconverged_solves", unconverged_solves);

@@ -57,7 +57,7 @@ template <int dim>
 void
 Fluid<dim>::refill()
 {
-  const std::size_t n_before = points.n_own;
+  const std::size_t          n_before = points.n_own;
   std::vector<unsigned char> taken_out(n_before, 0);
   find_strays(taken_out);
   find_corner_twins(taken_out);
@@ -201,7 +201,7 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
                   {double(points.id[in_order ? i : j]), double(points.id[in_order ? j : i])},
                   {i, j},
                   mpi::rank(comm)};
-    auto &longest = by_element[e];
+    auto      &longest = by_element[e];
     if (longest.length_square == 0 || edge.key() < longest.key())
       longest = edge;
   });

@@ -44,7 +44,7 @@ Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
     }
   timed("move", [&] {
     move(dt);
-    find_end_volume();
+    find_moved_boundary();
   });
   check_numbers();
 }
@@ -93,10 +93,10 @@ template <int dim>
 void
 Fluid<dim>::diffuse(const double dt)
 {
-  const double                 nu = options.viscosity / options.density;
-  std::vector<Vector>          force;
-  std::vector<double>          change(points.n_own), driving(points.n_own);
-  std::vector<unsigned char>   fixed(points.size());
+  const double               nu = options.viscosity / options.density;
+  std::vector<Vector>        force;
+  std::vector<double>        change(points.n_own), driving(points.n_own);
+  std::vector<unsigned char> fixed(points.size());
   FluidOperators<dim>(mesh, moved_rules, halo).laplacian(velocity, force);
   for (unsigned int d = 0; d < dim; ++d)
     {
@@ -107,8 +107,8 @@ Fluid<dim>::diffuse(const double dt)
             if (walls[i] >> face & 1)
               fixed[i] |= options.walls[face] == Wall::stick || face / 2 == d;
         }
-      viscous_system
-        .assemble(mesh, moved_rules, moved_volume, options.time_weight * dt * nu, fixed);
+      viscous_system.assemble(
+        mesh, moved_rules, moved_volume, options.time_weight * dt * nu, fixed);
       viscous_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::diagonal);
       for (std::size_t i = 0; i < points.n_own; ++i)
         {
@@ -209,12 +209,12 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
   FluidOperators<dim>(mesh, moved_rules, halo).divergence(scratch, right_side);
   // The rate at which volume is to change [1/s], little in a step.
   const double swelling =
-    options.volume_relaxation > 0 ?
-      std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
-                 -1e-3,
-                 1e-3) /
-        dt :
-      0.;
+    options.volume_relaxation > 0
+      ? std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
+                   -1e-3,
+                   1e-3) /
+          dt
+      : 0.;
   std::vector<double> surface(points.n_own);
   for (std::size_t i = 0; i < points.n_own; ++i)
     if (!no_pressure[i])
@@ -227,11 +227,12 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
     pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
   surface_pressure.resize(points.size());
   pushed.resize(points.size());
-  last_pressure_solve =
-    pressure_system.solve(right_side,
-                          pressure,
-                          options.solver,
-                          [this](double *result, const double *p) { add_surface_terms(result, p); });
+  last_pressure_solve = pressure_system.solve(right_side,
+                                              pressure,
+                                              options.solver,
+                                              [this](double *result, const double *p) {
+                                                add_surface_terms(result, p);
+                                              });
   ++pressure_solves;
   pressure_iterations += last_pressure_solve.iterations;
   unconverged_solves += !last_pressure_solve.converged;
@@ -279,7 +280,7 @@ Fluid<dim>::correct(const double dt)
       if (!isolated[i])
         {
           gradient[i] -= pressure[i] * surface_area[i];
-        corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
+          corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
           set_wall_velocity(i, corrected[i]);
         }
       moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
@@ -302,8 +303,8 @@ Fluid<dim>::move(const double dt)
       const double       before = corrected[i].norm_square();
       for (unsigned int face = 0; face < 2 * dim; ++face)
         {
-          const unsigned int d     = face / 2;
-          const double       place = face % 2 == 0 ? corners.first[d] : corners.second[d];
+          const unsigned int d      = face / 2;
+          const double       place  = face % 2 == 0 ? corners.first[d] : corners.second[d];
           const bool         beyond = face % 2 == 0 ? x[d] <= place : x[d] >= place;
           if (options.walls[face] == Wall::open || !(beyond || (on >> face & 1)))
             continue;
@@ -314,8 +315,7 @@ Fluid<dim>::move(const double dt)
           else
             corrected[i][d] = 0;
         }
-      energy.boundary +=
-        0.5 * options.density * volume[i] * (before - corrected[i].norm_square());
+      energy.boundary += 0.5 * options.density * volume[i] * (before - corrected[i].norm_square());
       for (unsigned int d = 0; d < dim; ++d)
         {
           columns[Layout::position + d][i] = x[d];
@@ -328,14 +328,11 @@ Fluid<dim>::move(const double dt)
 
 template <int dim>
 void
-Fluid<dim>::find_end_volume()
+Fluid<dim>::find_moved_boundary()
 {
-  std::vector<dealii::Point<dim>> x;
-  new_positions(x);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    scratch[i] = x[i] - points.position[i];
-  moved_rules.set_moved(rules, mesh, scratch);
-  end_volume = mpi::sum(moved_rules.volume(), comm);
+  PointCloud<dim> moved = points;
+  new_positions(moved.position);
+  moved_boundary = boundary_of(moved, mesh);
 }
 
 // With the masses of the halfway elements. What walls take is what they change of the corrected
@@ -347,16 +344,15 @@ Fluid<dim>::book_step(const double dt)
   double kinetic = 0;
   for (std::size_t i = 0; i < points.n_own; ++i)
     {
-      const double mass = options.density * moved_volume[i];
-      const Vector mean = 0.5 * (velocity[i] + corrected[i]);
+      const double mass  = options.density * moved_volume[i];
+      const Vector mean  = 0.5 * (velocity[i] + corrected[i]);
       Vector       force = options.gravity;
       if (body_force)
         for (unsigned int d = 0; d < dim; ++d)
           force[d] += body_force->value(points.position[i] + 0.5 * dt * moving[i], d);
-      const Vector push = -(isolated[i] ? 0. : dt) * gradient[i];
-      const Vector pressed =
-        isolated[i] ? predicted[i] : predicted[i] - dt / mass * gradient[i];
-      const double work = dt * mass * (force * moving[i]);
+      const Vector push    = -(isolated[i] ? 0. : dt) * gradient[i];
+      const Vector pressed = isolated[i] ? predicted[i] : predicted[i] - dt / mass * gradient[i];
+      const double work    = dt * mass * (force * moving[i]);
       energy.external_work += work;
       energy.internal -= push * mean;
       energy.boundary += mass * (pressed - corrected[i]) * mean;

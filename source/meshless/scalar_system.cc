@@ -15,7 +15,7 @@ using Vector = dealii::TrilinosWrappers::MPI::Vector;
 /// The matrix and what is added to it.
 struct Operator
 {
-  const dealii::TrilinosWrappers::SparseMatrix             &matrix;
+  const dealii::TrilinosWrappers::SparseMatrix        &matrix;
   const std::function<void(double *, const double *)> &addition;
 
   void vmult(Vector &result, const Vector &x) const
@@ -59,7 +59,8 @@ ScalarSystem<dim>::reinit(const Tessellation<dim> &tessellation, const Halo &hal
   std::sort(columns.begin(), columns.end());
   writable.add_indices(columns.begin(), std::unique(columns.begin(), columns.end()));
 
-  dealii::TrilinosWrappers::SparsityPattern pattern(owned, owned, writable, comm, dim == 2 ? 8 : 20);
+  dealii::TrilinosWrappers::SparsityPattern pattern(
+    owned, owned, writable, comm, dim == 2 ? 8 : 20);
   for (std::size_t i = 0; i < n_own; ++i)
     pattern.add(number[i], number[i]);
   for (unsigned int e = 0; e < tessellation.n_elements(); ++e)

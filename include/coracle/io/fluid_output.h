@@ -26,8 +26,7 @@ public:
   static void add_columns(Statistics &statistics, const std::string &name);
   static void set_columns(Statistics &statistics, const meshless::Fluid<dim> &fluid, MPI_Comm comm);
 
-  static void
-  add_energies(const meshless::Fluid<dim> &fluid, MPI_Comm comm, EnergyBooks &energies);
+  static void add_energies(const meshless::Fluid<dim> &fluid, MPI_Comm comm, EnergyBooks &energies);
 
   static BodyReport<dim> report(const meshless::Fluid<dim> &fluid);
 

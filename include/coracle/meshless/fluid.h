@@ -6,14 +6,15 @@
 #include <coracle/base/timer.h>
 #include <coracle/meshless/fluid_operators.h>
 #include <coracle/meshless/fluid_options.h>
+#include <coracle/meshless/volume_change.h>
 
 #include <optional>
 
 namespace coracle::meshless
 {
 /// Columns of a point's state between steps; all doubles, so that rows migrate and restart as they
-/// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on; free
-/// is 1 at the free surface and in drops.
+/// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on;
+/// free is 1 at the free surface and in drops.
 template <int dim>
 struct FluidLayout
 {
@@ -58,9 +59,8 @@ public:
   Fluid(const std::string &name, const FluidOptions<dim> &options, const MPI_Comm comm);
 
   /// One more point of this rank, before the first step.
-  void add_point(const dealii::Point<dim> &position,
-                 const Vector             &velocity,
-                 const std::uint64_t       id);
+  void
+  add_point(const dealii::Point<dim> &position, const Vector &velocity, const std::uint64_t id);
 
   /// Points go to their ranks, elements are found. After points were added or loaded. Collective.
   void remesh();
@@ -125,36 +125,40 @@ public:
   std::vector<double>        pressure;
   std::vector<unsigned char> walls, free_surface, isolated;
   /// Lumped, of own points [m^dim].
-  std::vector<double>       volume;
+  std::vector<double> volume;
   /// Acceleration besides gravity, or none.
   std::shared_ptr<dealii::Function<dim>> body_force;
-  const FluidOptions<dim>   options;
+  const FluidOptions<dim>                options;
 
 private:
-  void fill_cloud();
-  void find_free_surface();
+  void         fill_cloud();
+  void         find_free_surface();
   unsigned int held_walls(const std::size_t row) const;
-  void set_wall_velocity(const std::size_t row, Vector &v) const;
-  void move_elements(const double dt, const unsigned int iteration);
-  void predict(const double time, const double dt);
-  void diffuse(const double dt);
-  void find_surface_areas();
-  void add_surface_terms(double *result, const double *p);
-  void solve_pressure(const double dt, const unsigned int iteration);
-  void correct(const double dt);
-  void move(const double dt);
-  void find_end_volume();
-  void book_step(const double dt);
-  void check_numbers();
-  void new_positions(std::vector<dealii::Point<dim>> &x) const;
-  void find_strays(std::vector<unsigned char> &taken_out);
-  void find_corner_twins(std::vector<unsigned char> &taken_out);
-  void find_crowded(const std::vector<dealii::Point<dim>> &x,
-                    std::vector<unsigned char>            &taken_out);
-  void insert(const std::vector<dealii::Point<dim>> &x);
-  void insert_between(const std::array<unsigned int, 2>     &rows,
-                      const std::vector<dealii::Point<dim>> &x,
-                      const std::uint64_t                    id);
+  void         set_wall_velocity(const std::size_t row, Vector &v) const;
+  void         move_elements(const double dt, const unsigned int iteration);
+  void         predict(const double time, const double dt);
+  void         diffuse(const double dt);
+  void         find_surface_areas();
+  void         add_surface_terms(double *result, const double *p);
+  void         solve_pressure(const double dt, const unsigned int iteration);
+  void         correct(const double dt);
+  void         move(const double dt);
+  void         balance();
+  void         find_moved_boundary();
+  void         find_volume();
+  void         book_step(const double dt);
+  void         check_numbers();
+  void         new_positions(std::vector<dealii::Point<dim>> &x) const;
+  void         find_strays(std::vector<unsigned char> &taken_out);
+  void         find_corner_twins(std::vector<unsigned char> &taken_out);
+  void         find_crowded(const std::vector<dealii::Point<dim>> &x,
+                            std::vector<unsigned char>            &taken_out);
+  void         insert(const std::vector<dealii::Point<dim>> &x);
+  void         insert_between(const std::array<unsigned int, 2>     &rows,
+                              const std::vector<dealii::Point<dim>> &x,
+                              const std::uint64_t                    id);
+
+  static constexpr unsigned int steps_between_balances = 50;
 
   std::string       body_name;
   MPI_Comm          comm;
@@ -172,8 +176,12 @@ private:
   std::vector<Vector> surface_area, pushed;
   std::vector<double> surface_pressure, driven;
   Books               energy;
-  std::uint64_t       next_id = 0;
-  /// Now, and of the old elements at the end of the step [m^dim].
-  double current_volume = 0, end_volume = 0;
+  std::uint64_t       next_id        = 0;
+  double              current_volume = 0;
+  /// Of the old elements at the end of the step.
+  std::optional<std::vector<BoundaryFacet<dim>>> moved_boundary;
+  /// Steps since points were shared out among ranks; so many of them, or an uneven share, ask for
+  /// it.
+  unsigned int steps_since_balance = steps_between_balances;
 };
 } // namespace coracle::meshless

@@ -47,13 +47,14 @@ struct FluidOptions
   double time_weight = 1;
   /// Solutions of a step, each on elements moved halfway along the motion of the one before.
   unsigned int n_iterations = 2;
-  /// Time in which fluid that appeared or disappeared with new elements is taken back [s]; 0: never.
+  /// Time in which fluid that appeared or disappeared with new elements is taken back [s]; 0:
+  /// never.
   double volume_relaxation = 0;
   /// Share of h that a point may move in a step.
-  double                                largest_move = 0.25;
-  dealii::Tensor<1, dim>                gravity;
-  dealii::BoundingBox<dim>              box;
-  std::array<Wall, 2 * dim>             walls{};
+  double                    largest_move = 0.25;
+  dealii::Tensor<1, dim>    gravity;
+  dealii::BoundingBox<dim>  box;
+  std::array<Wall, 2 * dim> walls{};
 
   /// Entries of a body of the kind `meshless fluid`, without those of its shape and start.
   static void declare(Declaration &body);

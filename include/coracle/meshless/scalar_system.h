@@ -66,7 +66,8 @@ public:
                 const double                      b,
                 const std::vector<unsigned char> &fixed);
 
-  /// The preconditioner for the matrix as it is now; it may serve later matrices that differ little.
+  /// The preconditioner for the matrix as it is now; it may serve later matrices that differ
+  /// little.
   void prepare(const SolverOptions &options, const Preconditioner kind);
 
   /// What is added to the matrix where it is applied: (result, x), by own point.
@@ -93,15 +94,15 @@ private:
     return n_unknowns() <= options.direct_up_to;
   }
 
-  MPI_Comm                                          comm;
-  dealii::IndexSet                                  owned;
-  std::vector<dealii::types::global_dof_index>      number;
-  std::vector<unsigned char>                        fixed_rows;
-  Matrix                                            matrix;
+  MPI_Comm                                                    comm;
+  dealii::IndexSet                                            owned;
+  std::vector<dealii::types::global_dof_index>                number;
+  std::vector<unsigned char>                                  fixed_rows;
+  Matrix                                                      matrix;
   std::optional<dealii::TrilinosWrappers::PreconditionAMG>    multigrid;
   std::optional<dealii::TrilinosWrappers::PreconditionJacobi> diagonal;
   std::optional<dealii::TrilinosWrappers::SolverDirect>       direct;
-  Vector                                            solution, right_side;
-  dealii::SolverControl                             control;
+  Vector                                                      solution, right_side;
+  dealii::SolverControl                                       control;
 };
 } // namespace coracle::meshless

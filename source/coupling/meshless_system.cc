@@ -226,7 +226,7 @@ MeshlessSystem<dim>::serialize(Archive &archive)
     {
       body.serialize(archive);
       if (archive.loads())
-        body.remesh();
+        body.remesh(!archive.is_exact());
     }
 }
 

@@ -87,12 +87,13 @@ Fluid<dim>::fill_cloud()
 
 template <int dim>
 void
-Fluid<dim>::remesh()
+Fluid<dim>::remesh(const bool may_balance)
 {
   const double old_kinetic = energy.kinetic;
   next_id                  = mpi::max(next_id, comm);
   fill_cloud();
-  balance();
+  if (may_balance)
+    balance();
   halo.rebuild(points, options.tessellation.halo_width(options.spacing));
   halo.update(velocity);
   halo.update(pressure);

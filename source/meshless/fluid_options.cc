@@ -5,6 +5,12 @@ namespace coracle::meshless
 {
 namespace
 {
+double
+or_else(const double given, const double otherwise)
+{
+  return given > 0 ? given : otherwise;
+}
+
 void
 declare_refill(Declaration &body)
 {
@@ -116,23 +122,23 @@ FluidOptions<dim>::declare(Declaration &body)
   body.quantity("Viscosity", "0", "Pa s", "mu", "Dynamic; 0: none.", 0.);
   body.quantity(
     "Alpha",
-    "1.3",
+    "0",
     "1",
     "alpha",
-    "Elements are kept whose empty sphere's radius over the mean spacing of their points is "
-    "at most this; the boundary of the fluid follows. A square of points has 0.71, a cube "
-    "0.87.",
-    0.6,
+    "Elements are kept whose empty sphere's radius over the mean spacing of their points "
+    "is at most this; the boundary of the fluid follows. A square of points has 0.71, a "
+    "cube 0.87. 0: 1.3 in the plane, 1.5 in space.",
+    0.,
     10.);
-  body.quantity(
-    "Surface alpha",
-    "0.85",
-    "1",
-    "",
-    "As Alpha, for elements whose points were all at the free surface or drops in the step "
-    "before, between the two where some were: how near surfaces come before they join.",
-    0.5,
-    10.);
+  body.quantity("Surface alpha",
+                "0",
+                "1",
+                "",
+                "As Alpha, for elements whose points were all at the free surface or drops in the "
+                "step before, between the two where some were: how near surfaces come before they "
+                "join. 0: 0.85 in the plane, 1.05 in space.",
+                0.,
+                10.);
   body.quantity(
     "Merge tolerance",
     "1e-6",
@@ -151,11 +157,12 @@ FluidOptions<dim>
 FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gravity)
 {
   FluidOptions o;
-  o.density                      = body.quantity("Density");
-  o.viscosity                    = body.quantity("Viscosity");
-  o.spacing                      = body.quantity("Spacing");
-  o.tessellation.alpha           = body.quantity("Alpha");
-  o.surface_alpha                = std::min(body.quantity("Surface alpha"), o.tessellation.alpha);
+  o.density            = body.quantity("Density");
+  o.viscosity          = body.quantity("Viscosity");
+  o.spacing            = body.quantity("Spacing");
+  o.tessellation.alpha = or_else(body.quantity("Alpha"), dim == 2 ? 1.3 : 1.5);
+  o.surface_alpha =
+    std::min(o.tessellation.alpha, or_else(body.quantity("Surface alpha"), dim == 2 ? 0.85 : 1.05));
   o.tessellation.merge_tolerance = body.quantity("Merge tolerance");
   o.refill.enabled               = body.flag("Refill");
   o.refill.nearest               = body.quantity("Nearest points");

@@ -315,7 +315,10 @@ Fluid<dim>::move(const double dt)
           else
             corrected[i][d] = 0;
         }
-      energy.boundary += 0.5 * options.density * volume[i] * (before - corrected[i].norm_square());
+      const double stopped =
+        0.5 * options.density * moved_volume[i] * (before - corrected[i].norm_square());
+      energy.boundary += stopped;
+      energy.kinetic -= stopped;
       for (unsigned int d = 0; d < dim; ++d)
         {
           columns[Layout::position + d][i] = x[d];

@@ -175,7 +175,10 @@ ScalarSystem<dim>::solve(const std::vector<double> &f,
       std::fill_n(x.begin(), fixed_rows.size(), size);
       return report;
     }
-  dealii::SolverControl    limits(options.largest_iterations, options.tolerance * size);
+  dealii::SolverControl    limits(options.largest_iterations,
+                               options.tolerance * size,
+                               /*log_history=*/false,
+                               /*log_result=*/false);
   dealii::SolverCG<Vector> cg(limits);
   const Operator           system{matrix, addition};
   try

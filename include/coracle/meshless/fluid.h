@@ -62,8 +62,12 @@ public:
   void
   add_point(const dealii::Point<dim> &position, const Vector &velocity, const std::uint64_t id);
 
-  /// Points go to their ranks, elements are found. After points were added or loaded. Collective.
-  void remesh();
+  /**
+   * Points go to their ranks, elements are found. After points were added, loaded or moved.
+   * @param may_balance false: points stay on their ranks and in their order, as they were saved
+   * Collective.
+   */
+  void remesh(const bool may_balance = true);
 
   /// Bound on the step from what points may move, on all ranks [s].
   double step_limit() const;

@@ -103,6 +103,6 @@ private:
   std::optional<dealii::TrilinosWrappers::PreconditionJacobi> diagonal;
   std::optional<dealii::TrilinosWrappers::SolverDirect>       direct;
   Vector                                                      solution, right_side;
-  dealii::SolverControl                                       control;
+  dealii::SolverControl                                       control{1, 0., false, false};
 };
 } // namespace coracle::meshless

@@ -103,6 +103,26 @@ delaunay(const std::vector<dealii::Point<dim>> &points)
   return result;
 }
 
+bool
+radius_is_within(const std::array<dealii::Point<2>, 3> &x, const double radius)
+{
+  // In the plane flat triangles with a small circle have a short side, and no centre that slips.
+  const auto   a = x[1] - x[0], b = x[2] - x[0];
+  const double twice = a[0] * b[1] - a[1] * b[0];
+  return a.norm() * b.norm() * (b - a).norm() <= 2. * std::abs(twice) * radius;
+}
+
+bool
+radius_is_within(const std::array<dealii::Point<3>, 4> &x, const double radius)
+{
+  using L = Library<3>;
+  return CGAL::compare_squared_radius(L::point(x[0]),
+                                      L::point(x[1]),
+                                      L::point(x[2]),
+                                      L::point(x[3]),
+                                      radius * radius) != CGAL::LARGER;
+}
+
 template DelaunayCells<2> delaunay(const std::vector<dealii::Point<2>> &);
 template DelaunayCells<3> delaunay(const std::vector<dealii::Point<3>> &);
 } // namespace coracle::meshless

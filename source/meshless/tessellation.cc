@@ -48,6 +48,7 @@ public:
     result.on_free_surface.assign(points.size(), 0);
     result.has_element.assign(points.size(), 0);
     mark_points();
+    reserve();
     for (const unsigned int name : assembled)
       append(name);
     return std::move(result);
@@ -194,6 +195,23 @@ private:
         result.on_free_surface[i] = 0;
       else if (!result.has_element[i])
         result.on_free_surface[i] = 1;
+  }
+
+  void reserve()
+  {
+    std::size_t n_cells = 0, n_merged = 0;
+    for (const unsigned int name : assembled)
+      {
+        const unsigned int n = first[name + 1] - first[name];
+        n_cells += n;
+        n_merged += n > 1 ? n : 0;
+      }
+    result.node.reserve(assembled.size() * (dim + 1) + n_merged);
+    result.simplex.reserve(n_cells);
+    result.facet.reserve(n_merged * (dim + 1));
+    result.volume.reserve(assembled.size());
+    for (auto *offsets : {&result.first_node, &result.first_simplex, &result.first_facet})
+      offsets->reserve(assembled.size() + 1);
   }
 
   void append(const unsigned int name)

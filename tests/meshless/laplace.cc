@@ -128,7 +128,7 @@ at_the_rim(const std::string &name, const PointCloud<dim> &cloud, const Tessella
       for (unsigned int i = 0; i < n; ++i)
         facet = std::max(facet, std::abs(value[i] - share[i]));
     }
-  deallog << name << ' ' << dim << "-D: one at its node " << (node < 1e-7) << ", linear on facets "
+  deallog << name << ' ' << dim << "-D: one at its node " << (node < 1e-6) << ", linear on facets "
           << (facet < 1e-6) << std::endl;
 }
 

@@ -68,7 +68,7 @@ measure(const double n, const double moved)
       };
       auto delaunay_cells = delaunay(cloud.position);
       lap(0);
-      const auto cells = arrange(std::move(delaunay_cells), cloud);
+      const auto cells = arrange(std::move(delaunay_cells), cloud, options);
       lap(1);
       const auto element = merge_cells(cells, cloud, options, options.alpha * cloud.spacing[0]);
       lap(2);

@@ -41,8 +41,8 @@ double
 measure(const std::array<Tensor<1, 2>, 2> &edge, Tensor<1, 2> &center)
 {
   const double twice = edge[0][0] * edge[1][1] - edge[0][1] * edge[1][0];
-  center             = (cross_product_2d(edge[0]) * edge[1].norm_square() -
-            cross_product_2d(edge[1]) * edge[0].norm_square()) /
+  center             = (cross_product_2d(edge[1]) * edge[0].norm_square() -
+            cross_product_2d(edge[0]) * edge[1].norm_square()) /
            (2. * twice);
   return twice;
 }
@@ -107,7 +107,9 @@ measure_cell(Cells<dim> &cells, const unsigned int c, const PointCloud<dim> &poi
 
 template <int dim>
 Cells<dim>
-arrange(DelaunayCells<dim> &&delaunay, const PointCloud<dim> &points)
+arrange(DelaunayCells<dim>       &&delaunay,
+        const PointCloud<dim>     &points,
+        const TessellationOptions &options)
 {
   Cells<dim> cells;
   cells.node           = std::move(delaunay.node);
@@ -116,14 +118,16 @@ arrange(DelaunayCells<dim> &&delaunay, const PointCloud<dim> &points)
   cells.center.resize(n);
   for (auto *column : {&cells.radius, &cells.spacing, &cells.height, &cells.volume})
     column->resize(n);
+  cells.is_sliver.resize(n);
   for (unsigned int c = 0; c < n; ++c)
     {
       sort_nodes<dim>(cells.node[c], cells.neighbor[c], points.id);
       measure_cell(cells, c, points);
+      cells.is_sliver[c] = cells.height[c] <= options.merge_tolerance * cells.spacing[c];
     }
   return cells;
 }
 
-template Cells<2> arrange(DelaunayCells<2> &&, const PointCloud<2> &);
-template Cells<3> arrange(DelaunayCells<3> &&, const PointCloud<3> &);
+template Cells<2> arrange(DelaunayCells<2> &&, const PointCloud<2> &, const TessellationOptions &);
+template Cells<3> arrange(DelaunayCells<3> &&, const PointCloud<3> &, const TessellationOptions &);
 } // namespace coracle::meshless

@@ -11,6 +11,9 @@
 
 #include <coracle/meshless/delaunay.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace coracle::meshless
 {
 namespace
@@ -68,6 +71,27 @@ find_coincident(const std::vector<dealii::Point<dim>>      &points,
   const auto vertex = Library<dim>::nearest(triangulation, Library<dim>::point(points[left_out]));
   result.coincident = {vertex->info(), left_out};
 }
+/// Number the cells by their lowest point, so that what is near in the cloud is near in memory
+/// (CGAL's own order is not). Returns how many there are.
+template <int dim>
+unsigned int
+number_cells(typename Library<dim>::Triangulation &triangulation, const std::size_t n_points)
+{
+  const auto lowest = [](const auto &cell) {
+    unsigned int result = cell->vertex(0)->info();
+    for (int i = 1; i <= dim; ++i)
+      result = std::min(result, cell->vertex(i)->info());
+    return result;
+  };
+  std::vector<unsigned int> next(n_points + 1, 0);
+  for (const auto &cell : Library<dim>::cells(triangulation))
+    ++next[lowest(cell) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const unsigned int n_cells = next.back();
+  for (const auto &cell : Library<dim>::cells(triangulation))
+    cell->info() = next[lowest(cell)]++;
+  return n_cells;
+}
 } // namespace
 
 template <int dim>
@@ -87,9 +111,7 @@ delaunay(const std::vector<dealii::Point<dim>> &points)
   if (triangulation.dimension() < dim)
     return result;
 
-  unsigned int n_cells = 0;
-  for (const auto &cell : Library<dim>::cells(triangulation))
-    cell->info() = n_cells++;
+  const unsigned int n_cells = number_cells<dim>(triangulation, points.size());
   result.node.resize(n_cells);
   result.neighbor.resize(n_cells);
   for (const auto &cell : Library<dim>::cells(triangulation))
@@ -101,6 +123,26 @@ delaunay(const std::vector<dealii::Point<dim>> &points)
           triangulation.is_infinite(beyond) ? DelaunayCells<dim>::none : beyond->info();
       }
   return result;
+}
+
+bool
+radius_is_within(const std::array<dealii::Point<2>, 3> &x, const double radius)
+{
+  // In the plane flat triangles with a small circle have a short side, and no centre that slips.
+  const auto   a = x[1] - x[0], b = x[2] - x[0];
+  const double twice = a[0] * b[1] - a[1] * b[0];
+  return a.norm() * b.norm() * (b - a).norm() <= 2. * std::abs(twice) * radius;
+}
+
+bool
+radius_is_within(const std::array<dealii::Point<3>, 4> &x, const double radius)
+{
+  using L = Library<3>;
+  return CGAL::compare_squared_radius(L::point(x[0]),
+                                      L::point(x[1]),
+                                      L::point(x[2]),
+                                      L::point(x[3]),
+                                      radius * radius) != CGAL::LARGER;
 }
 
 template DelaunayCells<2> delaunay(const std::vector<dealii::Point<2>> &);

@@ -33,6 +33,17 @@ struct Corners
       }
     return result;
   }
+
+  double distance_square(const Corners &other) const
+  {
+    double result = 0.;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double between = std::max({0., low[d] - other.high[d], other.low[d] - high[d]});
+        result += between * between;
+      }
+    return result;
+  }
 };
 
 /// Box around the own points; of a rank without points infinitely far from everything.
@@ -82,7 +93,7 @@ Halo::rebuild(PointCloud<dim> &points, const double width)
 
   std::map<unsigned int, std::vector<Record<dim>>> sent;
   for (unsigned int r = 0; r < n_ranks; ++r)
-    if (r != me)
+    if (r != me && boxes[r].distance_square(mine) <= width * width)
       for (unsigned int i = 0; i < n_own_rows; ++i)
         if (boxes[r].distance_square(points.position[i]) <= width * width)
           {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/meshless/merging.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace coracle::meshless
@@ -30,6 +31,7 @@ private:
   std::vector<unsigned int> parent;
 };
 
+/// Finds the cells with a sphere that slivers join.
 template <int dim>
 class Slivers
 {
@@ -38,46 +40,67 @@ public:
           const PointCloud<dim>     &points,
           const TessellationOptions &options,
           const double               largest_radius)
-    : cells(cells), points(points), tolerance(options.merge_tolerance), limit(largest_radius)
+    : cells(cells), points(points), options(options), limit(largest_radius)
   {}
 
-  bool is_sliver(const unsigned int c) const
+  bool has_sphere(const unsigned int c) const
   {
-    return cells.height[c] <= tolerance * cells.spacing[c];
+    return cells.radius[c] <= limit && !cells.is_sliver[c];
   }
 
-  /// The cell whose element a sliver joins, or none if it is an element of its own.
-  unsigned int joined(const unsigned int sliver) const
+  /// Of each sliver the cell that it joins, itself if it is an element of its own; of others none.
+  std::vector<unsigned int> joined() const
   {
-    // Slivers lie upon each other where more than four points are on one circle.
-    constexpr unsigned int         most = 32;
-    std::array<unsigned int, most> passed;
-    unsigned int                   c = sliver, n = 0;
-    while (c != cells.none && is_sliver(c))
+    std::vector<unsigned int> found(cells.size(), cells.none), open;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      if (cells.is_sliver[c] && radius_is_within(corners(c), limit))
+        open.push_back(c);
+    // Slivers lie upon each other where more than four points are on a circle. In each round look
+    // at what earlier rounds have found, so that the order of cells does not matter.
+    for (bool changed = true; changed;)
       {
-        if (n == most)
-          return cells.none;
-        passed[n++] = c;
-        c           = next(c);
+        std::vector<std::pair<unsigned int, unsigned int>> round;
+        for (const unsigned int c : open)
+          {
+            const unsigned int sphere = beside(c, found);
+            if (sphere != cells.none)
+              round.emplace_back(c, sphere);
+          }
+        changed = !round.empty();
+        for (const auto &[sliver, sphere] : round)
+          found[sliver] = sphere;
+        open.erase(std::remove_if(open.begin(),
+                                  open.end(),
+                                  [&](const auto c) { return found[c] != cells.none; }),
+                   open.end());
       }
-    if (c == cells.none || !(cells.radius[c] <= limit))
-      return cells.none;
-    for (unsigned int i = 0; i < n; ++i)
-      if (!on_sphere(passed[i], c))
-        return cells.none;
-    return c;
+    for (const unsigned int c : open)
+      if (radius_is_within(corners(c), options.alpha * cells.spacing[c]))
+        found[c] = c;
+    return found;
   }
 
 private:
-  /// Beyond the facet that lacks the node of lowest id; of two that would choose each other, the
-  /// first goes elsewhere.
-  unsigned int next(const unsigned int c) const
+  std::array<dealii::Point<dim>, dim + 1> corners(const unsigned int c) const
   {
-    const unsigned int beyond = cells.neighbor[c][0];
-    const bool mutual = beyond != cells.none && is_sliver(beyond) && cells.neighbor[beyond][0] == c;
-    if (mutual && points.id[cells.node[c][0]] < points.id[cells.node[beyond][0]])
-      return cells.neighbor[c][1];
-    return beyond;
+    std::array<dealii::Point<dim>, dim + 1> result;
+    for (unsigned int i = 0; i <= dim; ++i)
+      result[i] = points.position[cells.node[c][i]];
+    return result;
+  }
+
+  /// The first cell with a sphere that a sliver fits, next to it or to slivers already found.
+  unsigned int beside(const unsigned int sliver, const std::vector<unsigned int> &found) const
+  {
+    for (const unsigned int beyond : cells.neighbor[sliver])
+      {
+        if (beyond == cells.none)
+          continue;
+        const unsigned int sphere = has_sphere(beyond) ? beyond : found[beyond];
+        if (sphere != cells.none && on_sphere(sliver, sphere))
+          return sphere;
+      }
+    return cells.none;
   }
 
   /// Are the nodes of a sliver on the sphere of a cell, with some allowance for its slope?
@@ -85,14 +108,15 @@ private:
   {
     for (const unsigned int node : cells.node[sliver])
       if (std::abs(points.position[node].distance(cells.center[c]) - cells.radius[c]) >
-          10. * tolerance * cells.spacing[c])
+          10. * options.merge_tolerance * cells.spacing[c])
         return false;
     return true;
   }
 
-  const Cells<dim>      &cells;
-  const PointCloud<dim> &points;
-  const double           tolerance, limit;
+  const Cells<dim>          &cells;
+  const PointCloud<dim>     &points;
+  const TessellationOptions &options;
+  const double               limit;
 };
 } // namespace
 
@@ -103,35 +127,23 @@ merge_cells(const Cells<dim>          &cells,
             const TessellationOptions &options,
             const double               largest_radius)
 {
-  const Slivers<dim> slivers(cells, points, options, largest_radius);
-  Sets               sets(cells.size());
-  const auto         has_sphere = [&](const unsigned int c) {
-    return cells.radius[c] <= largest_radius && !slivers.is_sliver(c);
-  };
-  for (unsigned int c = 0; c < cells.size(); ++c)
-    if (has_sphere(c))
-      {
-        for (const unsigned int beyond : cells.neighbor[c])
-          if (beyond != cells.none && beyond < c && has_sphere(beyond) &&
-              cells.center[c].distance(cells.center[beyond]) <=
-                options.merge_tolerance * std::min(cells.spacing[c], cells.spacing[beyond]))
-            sets.unite(c, beyond);
-      }
-    else if (slivers.is_sliver(c))
-      {
-        const unsigned int other = slivers.joined(c);
-        if (other != cells.none)
-          sets.unite(c, other);
-      }
-
+  const Slivers<dim>        slivers(cells, points, options, largest_radius);
+  Sets                      sets(cells.size());
   std::vector<unsigned int> element(cells.size(), cells.none);
   for (unsigned int c = 0; c < cells.size(); ++c)
-    {
-      const unsigned int set = sets.find(c);
-      // Slivers never give a set its name; one that joined nothing is judged by its own sphere.
-      if (set != c || cells.radius[c] <= largest_radius)
-        element[c] = set;
-    }
+    if (slivers.has_sphere(c))
+      for (const unsigned int beyond : cells.neighbor[c])
+        if (beyond != cells.none && beyond < c && slivers.has_sphere(beyond) &&
+            cells.center[c].distance(cells.center[beyond]) <=
+              options.merge_tolerance * std::min(cells.spacing[c], cells.spacing[beyond]))
+          sets.unite(c, beyond);
+  for (unsigned int c = 0; c < cells.size(); ++c)
+    if (slivers.has_sphere(c))
+      element[c] = sets.find(c);
+  const auto joined = slivers.joined();
+  for (unsigned int c = 0; c < cells.size(); ++c)
+    if (joined[c] != cells.none)
+      element[c] = sets.find(joined[c]);
   return element;
 }
 

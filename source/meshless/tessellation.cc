@@ -48,6 +48,7 @@ public:
     result.on_free_surface.assign(points.size(), 0);
     result.has_element.assign(points.size(), 0);
     mark_points();
+    reserve();
     for (const unsigned int name : assembled)
       append(name);
     return std::move(result);
@@ -80,6 +81,15 @@ private:
   /// The nodes of an element by rising id.
   void collect_nodes(const unsigned int name)
   {
+    if (first[name + 1] == first[name] + 1)
+      {
+        // By far the most, and sorted but for the last two.
+        const Nodes &cell = cells.node[member[first[name]]];
+        nodes.assign(cell.begin(), cell.end());
+        if (lower(nodes[dim], nodes[dim - 1]))
+          std::swap(nodes[dim], nodes[dim - 1]);
+        return;
+      }
     nodes.clear();
     for (unsigned int m = first[name]; m < first[name + 1]; ++m)
       nodes.insert(nodes.end(), cells.node[member[m]].begin(), cells.node[member[m]].end());
@@ -90,10 +100,14 @@ private:
   bool is_kept(const unsigned int name) const
   {
     // The largest sphere: which cell gives the element its name depends on the order of points.
-    double radius = 0., spacing = 0.;
+    // Slivers count only where they are alone.
+    double     radius = 0., spacing = 0.;
+    const bool alone = first[name + 1] - first[name] == 1;
     for (unsigned int m = first[name]; m < first[name + 1]; ++m)
-      if (!is_sliver(member[m]) || first[name + 1] - first[name] == 1)
+      if (alone || !cells.is_sliver[member[m]])
         radius = std::max(radius, cells.radius[member[m]]);
+    if (alone && cells.is_sliver[name])
+      radius = 0.; // decided in merge_cells
     bool has_fluid = false;
     for (const unsigned int node : nodes)
       {
@@ -101,11 +115,6 @@ private:
         has_fluid = has_fluid || points.kind[node] == PointKind::fluid;
       }
     return has_fluid && radius <= options.alpha * spacing / nodes.size();
-  }
-
-  bool is_sliver(const unsigned int c) const
-  {
-    return cells.height[c] <= options.merge_tolerance * cells.spacing[c];
   }
 
   /// Drop elements that are too large or all wall, and find those that this rank assembles.
@@ -122,21 +131,47 @@ private:
         }
   }
 
-  /// By the ids of their cells' nodes.
+  bool before(const unsigned int a, const unsigned int b) const
+  {
+    for (unsigned int i = 0; i < dim; ++i)
+      if (cells.node[a][i] != cells.node[b][i])
+        return lower(cells.node[a][i], cells.node[b][i]);
+    return lower(cells.node[a][dim], cells.node[b][dim]);
+  }
+
+  /// By the ids of their cells' nodes; first by the lowest, of which there are few each.
   void sort_assembled()
   {
-    const auto before = [&](const unsigned int a, const unsigned int b) {
-      return std::lexicographical_compare(cells.node[a].begin(),
-                                          cells.node[a].end(),
-                                          cells.node[b].begin(),
-                                          cells.node[b].end(),
-                                          [&](const auto i, const auto j) { return lower(i, j); });
-    };
+    const auto by_cells = [&](const auto a, const auto b) { return before(a, b); };
     for (const unsigned int name : assembled)
-      std::sort(member.begin() + first[name], member.begin() + first[name + 1], before);
-    std::sort(assembled.begin(), assembled.end(), [&](const unsigned int a, const unsigned int b) {
-      return before(member[first[a]], member[first[b]]);
-    });
+      if (first[name + 1] > first[name] + 1)
+        std::sort(member.begin() + first[name], member.begin() + first[name + 1], by_cells);
+
+    std::vector<unsigned int> row(points.n_own), place(points.n_own);
+    std::iota(row.begin(), row.end(), 0u);
+    const auto by_id = [&](const auto a, const auto b) { return lower(a, b); };
+    if (!std::is_sorted(row.begin(), row.end(), by_id))
+      std::sort(row.begin(), row.end(), by_id);
+    for (unsigned int i = 0; i < row.size(); ++i)
+      place[row[i]] = i;
+
+    const auto place_of = [&](const unsigned int name) {
+      return place[cells.node[member[first[name]]][0]];
+    };
+    std::vector<unsigned int> end(points.n_own + 1, 0), sorted(assembled.size());
+    for (const unsigned int name : assembled)
+      ++end[place_of(name) + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    const std::vector<unsigned int> begin = end;
+    for (const unsigned int name : assembled)
+      sorted[end[place_of(name)]++] = name;
+    for (unsigned int i = 0; i < points.n_own; ++i)
+      std::sort(sorted.begin() + begin[i],
+                sorted.begin() + end[i],
+                [&](const unsigned int a, const unsigned int b) {
+                  return before(member[first[a]], member[first[b]]);
+                });
+    assembled = std::move(sorted);
   }
 
   bool is_kept_cell(const unsigned int c) const
@@ -160,6 +195,23 @@ private:
         result.on_free_surface[i] = 0;
       else if (!result.has_element[i])
         result.on_free_surface[i] = 1;
+  }
+
+  void reserve()
+  {
+    std::size_t n_cells = 0, n_merged = 0;
+    for (const unsigned int name : assembled)
+      {
+        const unsigned int n = first[name + 1] - first[name];
+        n_cells += n;
+        n_merged += n > 1 ? n : 0;
+      }
+    result.node.reserve(assembled.size() * (dim + 1) + n_merged);
+    result.simplex.reserve(n_cells);
+    result.facet.reserve(n_merged * (dim + 1));
+    result.volume.reserve(assembled.size());
+    for (auto *offsets : {&result.first_node, &result.first_simplex, &result.first_facet})
+      offsets->reserve(assembled.size() + 1);
   }
 
   void append(const unsigned int name)
@@ -216,7 +268,7 @@ tessellate(const PointCloud<dim> &points, const TessellationOptions &options, co
   auto delaunay_cells = delaunay(points.position);
   mpi::agree([&] { refuse_coincident(delaunay_cells, points); }, comm);
 
-  const Cells<dim> cells = arrange(std::move(delaunay_cells), points);
+  const Cells<dim> cells = arrange(std::move(delaunay_cells), points, options);
   const double     spacing =
     points.size() == 0 ? 0. : *std::max_element(points.spacing.begin(), points.spacing.end());
   const double largest_radius = (options.alpha + options.merge_tolerance) * spacing;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <coracle/meshless/delaunay.h>
-#include <coracle/meshless/point_cloud.h>
+#include <coracle/meshless/tessellation.h>
 
 namespace coracle::meshless
 {
@@ -29,12 +29,16 @@ struct Cells
   std::vector<double> spacing, height;
   /// [m^dim]
   std::vector<double> volume;
+  /// As flat as the tolerance of merging.
+  std::vector<unsigned char> is_sliver;
 
   unsigned int size() const { return node.size(); }
 };
 
 template <int dim>
-Cells<dim> arrange(DelaunayCells<dim> &&cells, const PointCloud<dim> &points);
+Cells<dim> arrange(DelaunayCells<dim>       &&cells,
+                   const PointCloud<dim>     &points,
+                   const TessellationOptions &options);
 
 /// The facet of a cell that lacks its i-th node, turned counter-clockwise seen from outside.
 template <int dim>

@@ -38,4 +38,9 @@ struct DelaunayCells
  */
 template <int dim>
 DelaunayCells<dim> delaunay(const std::vector<dealii::Point<dim>> &points);
+
+/// Is the radius of the sphere through these points at most `radius` [m]? In 3-D decided exactly,
+/// also for points so near to one circle that a computed centre would be anywhere.
+bool radius_is_within(const std::array<dealii::Point<2>, 3> &points, const double radius);
+bool radius_is_within(const std::array<dealii::Point<3>, 4> &points, const double radius);
 } // namespace coracle::meshless

@@ -13,10 +13,12 @@ namespace coracle::meshless
  *
  * - Neighbours whose circumcentres agree within the tolerance are one.
  * - A sliver, as flat as the tolerance, lies between two elements that both have
- *   all its nodes on their spheres; its own sphere says nothing. It joins the
- *   element beyond the facet that lacks its node of lowest id, if that node is on
- *   the element's sphere. What joins depends on the sliver and the element alone,
- *   so that ranks who know these agree.
+ *   all its nodes on their spheres; its own centre says nothing. It joins the first
+ *   of these, in the order of the facets that lack its nodes of lowest id. A sliver
+ *   without such an element is one by itself if its sphere is at most alpha h large.
+ *
+ * What a cell joins depends on cells that share a facet with it, or with slivers
+ * upon it, whose nodes are on the same circle.
  */
 template <int dim>
 std::vector<unsigned int> merge_cells(const Cells<dim>          &cells,

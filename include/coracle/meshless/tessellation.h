@@ -20,10 +20,10 @@ struct TessellationOptions
   double merge_tolerance = 1e-6;
 
   /// How far from its own points a rank must know those of others, with `spacing` the largest of
-  /// all points [m].
+  /// all points [m]: an element and its neighbours.
   double halo_width(const double spacing) const
   {
-    return 2. * (alpha + 10. * merge_tolerance) * spacing;
+    return 4. * (alpha + 10. * merge_tolerance) * spacing;
   }
 };
 
@@ -80,9 +80,11 @@ struct Tessellation
  * unique: a regular grid gives squares or cubes. Slivers (simplices as flat as
  * the tolerance) join one of the elements beside them.
  *
- * A kept element lies in a ball of radius 2 alpha h around each of its points.
- * A rank that knows all points within options.halo_width() of its own therefore
- * finds the elements that all points together would give.
+ * A kept element lies in a ball of radius 2 alpha h around each of its points. A
+ * rank that knows all points within twice that of its own (options.halo_width())
+ * therefore finds its elements, and the neighbours that decide which of their
+ * facets are boundary and which of them slivers join, as all points together
+ * would give them.
  *
  * @throws RunFailure on all ranks if two points are at the same place. Collective.
  *

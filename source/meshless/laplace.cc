@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace coracle::meshless
 {
@@ -88,6 +89,10 @@ LaplaceShape<dim>::set_quadrature(const PointCloud<dim>   &points,
             Point<dim>(others + (near_corner<dim> - (1. - near_corner<dim>) / dim) * x[i]));
         }
     }
+  // What slivers have of the volume goes to the others.
+  const double total = std::accumulate(weights.begin(), weights.end(), 0.);
+  for (double &weight : weights)
+    weight *= tessellation.volume[element] / total;
 }
 
 template <int dim>
@@ -111,6 +116,7 @@ LaplaceShape<dim>::set_facets(const Tessellation<dim> &tessellation, const unsig
       facet.normal /= facet.normal.norm();
       facet.center        = center_of(x);
       facet.radius_square = facet.center.distance_square(x[0]);
+      facet.face          = tessellation.face[f];
       facets.push_back(facet);
     }
   if constexpr (dim == 3)

@@ -107,24 +107,9 @@ template <>
 void
 LaplaceShape<3>::integrate_surface()
 {
-  // Triangles in one plane are one face.
-  constexpr double          flat = 1e-4;
   std::vector<unsigned int> face(facets.size()), n_triangles(facets.size(), 0);
-  std::iota(face.begin(), face.end(), 0u);
-  bool changed = true;
-  while (changed)
-    {
-      changed = false;
-      for (const auto &[a, b, f, g] : pairs)
-        if (face[f] < face[g] && facets[f].normal * facets[g].normal > 0. &&
-            cross_product_3d(facets[f].normal, facets[g].normal).norm() < flat)
-          {
-            face[g] = face[f];
-            changed = true;
-          }
-    }
-  for (const unsigned int f : face)
-    ++n_triangles[f];
+  for (unsigned int f = 0; f < facets.size(); ++f)
+    ++n_triangles[face[f] = facets[f].face];
 
   surface.assign(n, Tensor<1, 3>());
   for (unsigned int f = 0; f < facets.size(); ++f)

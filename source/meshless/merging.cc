@@ -48,9 +48,10 @@ public:
     return cells.radius[c] <= limit && !cells.is_sliver[c];
   }
 
-  /// Of each sliver the cell that it joins, itself if it is an element of its own; of others none.
-  std::vector<unsigned int> joined() const
+  /// Given the elements of cells with a sphere, those of slivers.
+  void join(std::vector<unsigned int> &element) const
   {
+    // Of slivers, the cell whose sphere they are on.
     std::vector<unsigned int> found(cells.size(), cells.none), open;
     for (unsigned int c = 0; c < cells.size(); ++c)
       if (cells.is_sliver[c] && radius_is_within(corners(c), limit))
@@ -62,13 +63,16 @@ public:
         std::vector<std::pair<unsigned int, unsigned int>> round;
         for (const unsigned int c : open)
           {
-            const unsigned int sphere = beside(c, found);
+            const unsigned int sphere = beside(c, found, element);
             if (sphere != cells.none)
               round.emplace_back(c, sphere);
           }
         changed = !round.empty();
         for (const auto &[sliver, sphere] : round)
-          found[sliver] = sphere;
+          {
+            found[sliver]   = sphere;
+            element[sliver] = element[sphere];
+          }
         open.erase(std::remove_if(open.begin(),
                                   open.end(),
                                   [&](const auto c) { return found[c] != cells.none; }),
@@ -76,8 +80,7 @@ public:
       }
     for (const unsigned int c : open)
       if (radius_is_within(corners(c), options.alpha * cells.spacing[c]))
-        found[c] = c;
-    return found;
+        element[c] = c;
   }
 
 private:
@@ -89,15 +92,24 @@ private:
     return result;
   }
 
-  /// The first cell with a sphere that a sliver fits, next to it or to slivers already found.
-  unsigned int beside(const unsigned int sliver, const std::vector<unsigned int> &found) const
+  /// A cell with a sphere that a sliver fits, next to it or to slivers already found. In space its
+  /// element must have two facets of the sliver, as it has if it is all that lies on one side;
+  /// otherwise the sliver would stick out of it.
+  unsigned int beside(const unsigned int               sliver,
+                      const std::vector<unsigned int> &found,
+                      const std::vector<unsigned int> &element) const
   {
-    for (const unsigned int beyond : cells.neighbor[sliver])
+    const auto &neighbors = cells.neighbor[sliver];
+    for (const unsigned int beyond : neighbors)
       {
-        if (beyond == cells.none)
+        if (beyond == cells.none || element[beyond] == cells.none)
           continue;
         const unsigned int sphere = has_sphere(beyond) ? beyond : found[beyond];
-        if (sphere != cells.none && on_sphere(sliver, sphere))
+        const auto         shared =
+          std::count_if(neighbors.begin(), neighbors.end(), [&](const unsigned int other) {
+            return other != cells.none && element[other] == element[beyond];
+          });
+        if (shared >= dim - 1 && on_sphere(sliver, sphere))
           return sphere;
       }
     return cells.none;
@@ -108,7 +120,7 @@ private:
   {
     for (const unsigned int node : cells.node[sliver])
       if (std::abs(points.position[node].distance(cells.center[c]) - cells.radius[c]) >
-          10. * options.merge_tolerance * cells.spacing[c])
+          4. * options.merge_tolerance * cells.spacing[c])
         return false;
     return true;
   }
@@ -140,10 +152,7 @@ merge_cells(const Cells<dim>          &cells,
   for (unsigned int c = 0; c < cells.size(); ++c)
     if (slivers.has_sphere(c))
       element[c] = sets.find(c);
-  const auto joined = slivers.joined();
-  for (unsigned int c = 0; c < cells.size(); ++c)
-    if (joined[c] != cells.none)
-      element[c] = sets.find(joined[c]);
+  slivers.join(element);
   return element;
 }
 

@@ -2,6 +2,8 @@
 #include <coracle/base/exceptions.h>
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/merging.h>
+#include <coracle/meshless/simplex.h>
+#include <coracle/meshless/splitting.h>
 #include <coracle/meshless/tessellation.h>
 
 #include <algorithm>
@@ -219,16 +221,19 @@ private:
     collect_nodes(name);
     result.node.insert(result.node.end(), nodes.begin(), nodes.end());
     double volume = 0.;
+    beyond_facet.clear();
     for (unsigned int m = first[name]; m < first[name + 1]; ++m)
       {
         const unsigned int c = member[m];
         volume += cells.volume[c];
-        // What is flat to round-off has no inside where shape functions could be evaluated.
-        if (cells.height[c] > 1e-8 * cells.spacing[c])
+        // A sliver has hardly an inside, and shape functions change across it from those of one
+        // facet to those of two.
+        if (!cells.is_sliver[c] || first[name + 1] == first[name] + 1)
           result.simplex.push_back(cells.node[c]);
         for (unsigned int i = 0; i <= dim; ++i)
           append_facet(name, c, i);
       }
+    append_faces();
     result.volume.push_back(volume);
     result.first_node.push_back(result.node.size());
     result.first_simplex.push_back(result.simplex.size());
@@ -242,7 +247,10 @@ private:
       return;
     const auto facet = facet_of<dim>(cells.node[c], i);
     if (nodes.size() > dim + 1)
-      result.facet.push_back(facet);
+      {
+        result.facet.push_back(facet);
+        beyond_facet.push_back(!is_kept_cell(beyond) ? none : element[beyond]);
+      }
     if (!is_kept_cell(beyond))
       {
         result.boundary_facet.push_back(facet);
@@ -250,12 +258,63 @@ private:
       }
   }
 
+  bool is_simplex(const unsigned int name) const
+  {
+    return name != none && first[name + 1] == first[name] + 1;
+  }
+
+  /// Which of the facets just appended are one face? Not those towards a sliver, linear on each.
+  void append_faces()
+  {
+    const unsigned int begin = result.face.size(), n = result.facet.size() - begin;
+    for (unsigned int f = 0; f < n; ++f)
+      result.face.push_back(f);
+    if (dim == 2)
+      return;
+    const auto face = result.face.begin() + begin;
+    for (bool changed = true; changed;)
+      {
+        changed = false;
+        for (unsigned int f = 0; f < n; ++f)
+          for (unsigned int g = 0; g < n; ++g)
+            if (face[f] < face[g] && beyond_facet[f] == beyond_facet[g] &&
+                !is_simplex(beyond_facet[f]) &&
+                in_one_plane(result.facet[begin + f], result.facet[begin + g]))
+              {
+                face[g] = face[f];
+                changed = true;
+              }
+      }
+  }
+
+  /// Do two facets share an edge, and is it flat within the tolerance?
+  bool in_one_plane(const std::array<unsigned int, dim> &a,
+                    const std::array<unsigned int, dim> &b) const
+  {
+    unsigned int n_shared = 0;
+    for (const unsigned int node : a)
+      n_shared += std::count(b.begin(), b.end(), node);
+    if (n_shared != dim - 1)
+      return false;
+    const auto normal = [&](const std::array<unsigned int, dim> &facet) {
+      std::array<dealii::Point<dim>, dim> x;
+      for (unsigned int i = 0; i < dim; ++i)
+        x[i] = points.position[facet[i]];
+      return normal_of(x);
+    };
+    const auto   m = normal(a), n = normal(b);
+    const double cosine = m * n, both = m.norm() * n.norm();
+    // The sine, without its loss of digits near zero.
+    const double sine = (m / m.norm() - n / n.norm()).norm();
+    return cosine > 0. && both > 0. && sine < 5. * options.merge_tolerance + 1e-8;
+  }
+
   const Cells<dim>               &cells;
   const std::vector<unsigned int> element;
   const PointCloud<dim>          &points;
   const TessellationOptions      &options;
 
-  std::vector<unsigned int> first, member, assembled, nodes;
+  std::vector<unsigned int> first, member, assembled, nodes, beyond_facet;
   std::vector<bool>         kept;
   Tessellation<dim>         result;
 };
@@ -272,8 +331,9 @@ tessellate(const PointCloud<dim> &points, const TessellationOptions &options, co
   const double     spacing =
     points.size() == 0 ? 0. : *std::max_element(points.spacing.begin(), points.spacing.end());
   const double largest_radius = (options.alpha + options.merge_tolerance) * spacing;
-  return Builder<dim>(cells, merge_cells(cells, points, options, largest_radius), points, options)
-    .build();
+  auto         element        = merge_cells(cells, points, options, largest_radius);
+  split_dented(cells, points, options, element);
+  return Builder<dim>(cells, std::move(element), points, options).build();
 }
 
 template Tessellation<2>

@@ -67,6 +67,7 @@ private:
     dealii::Tensor<1, dim>        normal;
     dealii::Point<dim>            center;
     double                        radius_square;
+    unsigned int                  face;
   };
 
   void set_simplex(const double volume);

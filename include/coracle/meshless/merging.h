@@ -14,8 +14,9 @@ namespace coracle::meshless
  * - Neighbours whose circumcentres agree within the tolerance are one.
  * - A sliver, as flat as the tolerance, lies between two elements that both have
  *   all its nodes on their spheres; its own centre says nothing. It joins the first
- *   of these, in the order of the facets that lack its nodes of lowest id. A sliver
- *   without such an element is one by itself if its sphere is at most alpha h large.
+ *   of these, in the order of the facets that lack its nodes of lowest id, that has
+ *   all of one of its sides. A sliver without such an element is one by itself if its
+ *   sphere is at most alpha h large.
  *
  * What a cell joins depends on cells that share a facet with it, or with slivers
  * upon it, whose nodes are on the same circle.

@@ -48,7 +48,7 @@ struct Tessellation
   /// Nodes of element e, by rising id: node[first_node[e]] to node[first_node[e + 1]].
   std::vector<unsigned int> first_node = {0}, node;
 
-  /// The element cut into simplices of positive volume, for quadrature.
+  /// The element cut into simplices, for quadrature; slivers are left out, but for lone ones.
   std::vector<unsigned int> first_simplex = {0};
   std::vector<Simplex>      simplex;
 
@@ -57,6 +57,9 @@ struct Tessellation
   /// are simplices have none here.
   std::vector<unsigned int> first_facet = {0};
   std::vector<Facet>        facet;
+  /// Of each of these the face it is part of, by one of the face's facets (counted from the
+  /// element's first): triangles in one plane are one face if they look at the same element.
+  std::vector<unsigned int> face;
 
   /// Of each element [m^dim].
   std::vector<double> volume;

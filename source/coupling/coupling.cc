@@ -93,7 +93,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
   , materials(root)
   , structure(root, materials, options.gravity, comm)
   , points(root, materials, options.gravity, structure.n_sheets(), comm, saved_octree)
-  , fluids(root, options.gravity, points.octree, saved_octree.empty())
+  , fluids(root, options.gravity, points.octree, structure, saved_octree.empty())
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
   , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
   , comm(comm)
@@ -115,7 +115,7 @@ Coupling<dim>::serialize(Archive &archive)
   archive.same("step", n_steps);
   structure.serialize(archive);
   points.serialize(archive);
-  fluids.serialize(archive);
+  fluids.serialize(archive, structure);
   contacts.serialize(archive, points);
   adaptivity.state.serialize(archive);
   if (!archive.is_exact())
@@ -171,7 +171,7 @@ Coupling<dim>::advance(const double end_time)
   });
 
   timed("meshless fluid", [&] {
-    fluids.advance(current_time, dt, timed);
+    fluids.advance(current_time, dt, structure, timed);
     timed.count("point", fluids.n_points());
   });
 
@@ -202,7 +202,7 @@ Coupling<dim>::advance(const double end_time)
     points.locate(current_time);
     timed.count("particle", points.n_particles());
   });
-  timed("refill", [&] { fluids.refill(); });
+  timed("refill", [&] { fluids.refill(structure); });
   timed("tessellation", [&] {
     fluids.remesh();
     timed.count("point", fluids.n_points());

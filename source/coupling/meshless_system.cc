@@ -23,9 +23,9 @@ check_company(const Parameters &bodies)
     {
       const Parameters  body = bodies.section(name);
       const std::string kind = body.choice("Kind");
-      if (kind != "meshless fluid")
+      if (kind == "material points")
         throw body.error("Kind",
-                         "a meshless fluid meets no other body yet",
+                         "a meshless fluid meets no material points",
                          "'" + name + "' is of the kind '" + kind + "'",
                          "take the body out, or make the fluid one of material points");
       if (n_fluids > 1)
@@ -72,6 +72,21 @@ private:
   std::array<std::uint64_t, dim> n;
 };
 
+/// Elements reach from node to node of a surface, no farther than alpha allows.
+template <int dim>
+void
+check_surfaces(const Parameters &body, const meshless::Fluid<dim> &fluid)
+{
+  const double longest = fluid.structures.longest_edge(), spacing = fluid.options.spacing;
+  if (longest > 1.5 * spacing)
+    throw body.error(
+      "Spacing",
+      "a structure's surface is too coarse for the fluid",
+      "its longest edge is " + std::to_string(longest) + " m, points of the fluid are " +
+        std::to_string(spacing) + " m apart",
+      "refine the structure's mesh to edges of one spacing, or take a larger spacing");
+}
+
 /// The grid's faces in the fluid's words.
 template <int dim>
 void
@@ -107,7 +122,9 @@ template <int dim>
 MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
                                     const dealii::Tensor<1, dim> &gravity,
                                     const Octree<dim>            &octree,
+                                    StructureSystem<dim>         &structure,
                                     const bool                    with_points)
+  : comm(octree.triangulation.get_communicator())
 {
   const Parameters section = root.section("Bodies");
   check_company<dim>(section);
@@ -125,6 +142,9 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
       if (with_points)
         {
           generate(body, octree, fluid);
+          look_at(structure, fluid);
+          check_surfaces(body, fluid);
+          fluid.clear_structures();
           fluid.remesh();
         }
     }
@@ -192,11 +212,46 @@ MeshlessSystem<dim>::describe_limit() const
 
 template <int dim>
 void
-MeshlessSystem<dim>::advance(const double time, const double dt, TimingTable &timed)
+MeshlessSystem<dim>::look_at(StructureSystem<dim> &structure, meshless::Fluid<dim> &fluid) const
+{
+  if (structure.empty())
+    return;
+  const contact::Surface<dim> &surface = structure.publish_surface();
+  std::vector<int>             rigid_of_node(surface.nodes.size(), -1);
+  for (unsigned int body = 0; body < structure.n_bodies(); ++body)
+    for (unsigned int i = structure.begin_nodes(body); i < structure.begin_nodes(body + 1); ++i)
+      rigid_of_node[i] = surface.bodies[structure.first_surface(body)].rigid_body;
+  fluid.structures.update(surface, rigid_of_node, structure.rigid_unknowns(), comm);
+}
+
+template <int dim>
+void
+MeshlessSystem<dim>::push(StructureSystem<dim> &structure, const meshless::Fluid<dim> &fluid) const
+{
+  if (structure.empty())
+    return;
+  const std::size_t                   n = structure.publish_surface().nodes.size();
+  std::vector<dealii::Tensor<1, dim>> impulse(n), correction(n);
+  for (unsigned int i = 0; i < fluid.structures.nodes.size(); ++i)
+    impulse[fluid.structures.nodes[i].place] = fluid.node_impulses[i];
+  std::vector<typename contact::ContactSystem<dim>::RigidImpulse> rigid;
+  for (const auto &push : fluid.rigid_impulses)
+    rigid.push_back({push.impulse, push.moment, {}, {}});
+  structure.apply_contact(impulse, correction, rigid);
+}
+
+template <int dim>
+void
+MeshlessSystem<dim>::advance(const double          time,
+                             const double          dt,
+                             StructureSystem<dim> &structure,
+                             TimingTable          &timed)
 {
   for (auto &body : bodies)
     {
+      look_at(structure, body);
       body.advance(time, dt, timed);
+      push(structure, body);
       if (!failure && body.failure)
         failure.emplace(*body.failure);
     }
@@ -204,10 +259,13 @@ MeshlessSystem<dim>::advance(const double time, const double dt, TimingTable &ti
 
 template <int dim>
 void
-MeshlessSystem<dim>::refill()
+MeshlessSystem<dim>::refill(StructureSystem<dim> &structure)
 {
   for (auto &body : bodies)
-    body.refill();
+    {
+      look_at(structure, body);
+      body.refill();
+    }
 }
 
 template <int dim>
@@ -220,13 +278,16 @@ MeshlessSystem<dim>::remesh()
 
 template <int dim>
 void
-MeshlessSystem<dim>::serialize(Archive &archive)
+MeshlessSystem<dim>::serialize(Archive &archive, StructureSystem<dim> &structure)
 {
   for (auto &body : bodies)
     {
       body.serialize(archive);
       if (archive.loads())
-        body.remesh(!archive.is_exact());
+        {
+          look_at(structure, body);
+          body.remesh(!archive.is_exact());
+        }
     }
 }
 

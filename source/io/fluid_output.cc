@@ -36,7 +36,7 @@ FluidOutput<dim>::write(const double time, const meshless::Fluid<dim> &fluid)
   number.exact   = true;
   const std::vector<Field> fields{scalar_field("pressure", "Pa", fluid.pressure),
                                   scalar_field("free_surface", "1", free)};
-  points.write(time, cloud.n_own, {position, velocity, fields[0], fields[1], number});
+  points.write(time, fluid.n_fluid(), {position, velocity, fields[0], fields[1], number});
 
   const auto               &mesh = fluid.mesh;
   std::vector<double>       n_nodes;
@@ -108,7 +108,7 @@ FluidOutput<dim>::set_columns(Statistics                 &statistics,
   for (unsigned int d = 0; d < dim; ++d)
     {
       double lowest = std::numeric_limits<double>::max(), highest = -lowest;
-      for (std::size_t i = 0; i < fluid.points.n_own; ++i)
+      for (std::size_t i = 0; i < fluid.n_fluid(); ++i)
         if (!fluid.isolated[i])
           {
             lowest  = std::min(lowest, fluid.points.position[i][d]);
@@ -151,11 +151,11 @@ FluidOutput<dim>::set_probe(const PointProbe<dim>      &probe,
                             Statistics                 &statistics)
 {
   // Drops have no mass of their own, but count.
-  std::vector<double> mass(fluid.volume.begin(), fluid.volume.begin() + fluid.points.n_own);
+  std::vector<double> mass(fluid.volume.begin(), fluid.volume.begin() + fluid.n_fluid());
   for (double &m : mass)
     m = std::max(m * fluid.options.density, 1e-300);
   ParticleView view;
-  view.n_particles = fluid.points.n_own;
+  view.n_particles = fluid.n_fluid();
   view.position    = vector_field("position", "m", fluid.points.position);
   view.velocity    = vector_field("velocity", "m/s", fluid.velocity);
   view.mass        = mass.data();

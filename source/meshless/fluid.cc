@@ -62,6 +62,7 @@ Fluid<dim>::fill_cloud()
   const std::size_t n = columns.size();
   points              = PointCloud<dim>();
   points.n_own        = n;
+  n_cloud             = n;
   points.position.resize(n);
   points.spacing.resize(n);
   points.kind.assign(n, PointKind::fluid);
@@ -94,18 +95,19 @@ Fluid<dim>::remesh(const bool may_balance)
   fill_cloud();
   if (may_balance)
     balance();
+  add_structure_points();
   halo.rebuild(points, options.tessellation.halo_width(options.spacing));
   halo.update(velocity);
   halo.update(pressure);
   halo.update(walls);
   mesh = tessellate(points, options.tessellation, comm);
-  points.spacing.assign(columns[Layout::spacing], columns[Layout::spacing] + points.n_own);
+  std::copy_n(columns[Layout::spacing], n_cloud, points.spacing.begin());
   halo.update(points.spacing);
   rules.reinit(points, mesh);
   FluidOperators<dim>(mesh, rules, halo).lumped_volume(volume);
   find_free_surface();
   energy.kinetic = 0;
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     energy.kinetic += 0.5 * options.density * volume[i] * velocity[i].norm_square();
   if (initial_volume > 0)
     energy.transfer += old_kinetic - energy.kinetic;
@@ -142,8 +144,8 @@ Fluid<dim>::find_volume()
   moved_boundary.reset();
 }
 
-// Facets whose points are all on one face of the box are wall, all other ones of the boundary are
-// free surface.
+// Facets whose points are all on one face of the box, or all of structures, are wall, all other
+// ones of the boundary are free surface.
 template <int dim>
 void
 Fluid<dim>::find_free_surface()
@@ -151,14 +153,21 @@ Fluid<dim>::find_free_surface()
   std::vector<double> n_free(points.size());
   surface_facets.clear();
   surface_elements.clear();
+  wall_facets.clear();
   for (const auto &facet : mesh.boundary_facet)
     {
-      unsigned int common = ~0u;
+      unsigned int common    = ~0u;
+      bool         structure = true;
       for (const unsigned int node : facet)
-        common &= walls[node];
-      if (common == 0)
+        {
+          common &= walls[node];
+          structure &= is_structure(node);
+        }
+      if (structure)
+        wall_facets.push_back(facet);
+      else if (common == 0)
         surface_facets.push_back(facet);
-      if (common == 0)
+      if (!structure && common == 0)
         for (const unsigned int node : facet)
           n_free[node] += 1;
     }
@@ -168,10 +177,11 @@ Fluid<dim>::find_free_surface()
   for (std::size_t i = 0; i < points.n_own; ++i)
     {
       isolated[i]     = !mesh.has_element[i];
-      free_surface[i] = isolated[i] || n_free[i] > 0;
+      free_surface[i] = !is_structure(i) && (isolated[i] || n_free[i] > 0);
       if (isolated[i])
         pressure[i] = 0;
-      columns[Layout::free][i] = free_surface[i];
+      if (i < n_cloud)
+        columns[Layout::free][i] = free_surface[i];
     }
   no_pressure = isolated;
   // Where the fluid fills the box, the pressure of one point is chosen.
@@ -202,12 +212,15 @@ typename Fluid<dim>::Summary
 Fluid<dim>::summary() const
 {
   std::array<double, 5 + 2 * dim> sums{};
-  sums[0] = points.n_own;
+  sums[0] = n_cloud;
   sums[1] = mesh.n_elements();
   for (std::size_t i = 0; i < points.n_own; ++i)
     {
-      sums[2] += free_surface[i];
-      sums[3] += isolated[i];
+      if (i < n_cloud)
+        {
+          sums[2] += free_surface[i];
+          sums[3] += isolated[i];
+        }
       sums[4] += volume[i];
       for (unsigned int d = 0; d < dim; ++d)
         {
@@ -237,7 +250,7 @@ Fluid<dim>::describe_limit() const
 {
   // Speed, id, place.
   std::array<double, 2 + dim> fastest{};
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     if (velocity[i].norm() > fastest[0])
       {
         fastest = {velocity[i].norm(), static_cast<double>(points.id[i])};

@@ -47,9 +47,11 @@ void
 Fluid<dim>::new_positions(std::vector<dealii::Point<dim>> &x) const
 {
   x.resize(points.n_own);
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     for (unsigned int d = 0; d < dim; ++d)
       x[i][d] = columns[Layout::position + d][i];
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    x[i] = points.position[i] + last_dt * moving[i];
   halo.update(x);
 }
 
@@ -57,14 +59,15 @@ template <int dim>
 void
 Fluid<dim>::refill()
 {
-  const std::size_t          n_before = points.n_own;
+  const std::size_t          n_before = n_cloud;
   std::vector<unsigned char> taken_out(n_before, 0);
   find_strays(taken_out);
   find_corner_twins(taken_out);
+  std::vector<dealii::Point<dim>> x;
+  new_positions(x);
+  find_inside(x, taken_out);
   if (options.refill.enabled)
     {
-      std::vector<dealii::Point<dim>> x;
-      new_positions(x);
       find_crowded(x, taken_out);
       insert(x);
     }
@@ -87,7 +90,7 @@ Fluid<dim>::find_strays(std::vector<unsigned char> &taken_out)
 {
   std::uint64_t n       = 0;
   const auto    corners = options.box.get_boundary_points();
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     for (unsigned int d = 0; d < dim && !taken_out[i]; ++d)
       if (const double x = columns[Layout::position + d][i];
           x < corners.first[d] || x > corners.second[d])
@@ -104,7 +107,7 @@ void
 Fluid<dim>::find_corner_twins(std::vector<unsigned char> &taken_out)
 {
   std::vector<std::array<double, 2>> here;
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     if (n_faces(columns[Layout::walls][i]) == dim)
       here.push_back({columns[Layout::walls][i], columns[Layout::id][i]});
   std::map<double, double> first;
@@ -118,7 +121,7 @@ Fluid<dim>::find_corner_twins(std::vector<unsigned char> &taken_out)
       }
   counts.taken_out += n;
   if (n > 0)
-    for (std::size_t i = 0; i < points.n_own; ++i)
+    for (std::size_t i = 0; i < n_cloud; ++i)
       if (n_faces(columns[Layout::walls][i]) == dim)
         taken_out[i] |= columns[Layout::id][i] != first.at(columns[Layout::walls][i]);
 }
@@ -135,7 +138,7 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
 {
   std::vector<double> marks(points.size());
   const auto          rank_of = [this](const unsigned int i) {
-    return std::array<double, 3>{double(n_faces(walls[i])),
+    return std::array<double, 3>{is_structure(i) ? dim + 1. : double(n_faces(walls[i])),
                                  double(free_surface[i]),
                                  -double(points.id[i])};
   };
@@ -146,13 +149,14 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
       return;
     const unsigned int loser = rank_of(i) < rank_of(j) ? i : j;
     // A corner may be all that holds the fluid's outline there.
-    if (n_faces(walls[loser]) < dim && (!free_surface[loser] || share < 1))
+    if (!is_structure(loser) && n_faces(walls[loser]) < dim && (!free_surface[loser] || share < 1))
       marks[loser] += 1;
   });
+  find_flattened(x, marks);
   halo.sum_to_owners(marks);
   std::uint64_t n       = 0;
   const auto    corners = options.box.get_boundary_points();
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     {
       bool goes = marks[i] > 0;
       if (!free_surface[i] && !isolated[i])
@@ -189,7 +193,9 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
       inside[e] |= !free_surface[mesh.node[i]];
   std::map<unsigned int, LongEdge> by_element;
   for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int e) {
-    const double h           = 0.5 * (points.spacing[i] + points.spacing[j]);
+    const double h = 0.5 * (points.spacing[i] + points.spacing[j]);
+    if (is_structure(i) && is_structure(j))
+      return;
     const bool   on_boundary = (walls[i] & walls[j]) || (free_surface[i] && free_surface[j]);
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;

@@ -34,7 +34,10 @@ template <int dim>
 void
 Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
 {
-  moving = velocity;
+  moving  = velocity;
+  last_dt = dt;
+  surface_pressure.resize(points.size());
+  move_structures(dt, false);
   for (unsigned int iteration = 0; iteration < options.n_iterations; ++iteration)
     {
       timed("elements", [&] { move_elements(dt, iteration); });
@@ -102,7 +105,7 @@ Fluid<dim>::diffuse(const double dt)
     {
       for (std::size_t i = 0; i < points.size(); ++i)
         {
-          fixed[i] = isolated[i];
+          fixed[i] = isolated[i] || is_structure(i);
           for (unsigned int face = 0; face < 2 * dim; ++face)
             if (walls[i] >> face & 1)
               fixed[i] |= options.walls[face] == Wall::stick || face / 2 == d;
@@ -121,6 +124,20 @@ Fluid<dim>::diffuse(const double dt)
     }
 }
 
+// On the halfway elements.
+template <int dim>
+typename Fluid<dim>::Vector
+Fluid<dim>::facet_area(const typename Tessellation<dim>::Facet &facet) const
+{
+  std::array<Vector, dim> x;
+  for (unsigned int i = 0; i < dim; ++i)
+    x[i] = points.position[facet[i]] + scratch[facet[i]];
+  if constexpr (dim == 2)
+    return cross_product_2d(x[1] - x[0]);
+  else
+    return 0.5 * cross_product_3d(x[1] - x[0], x[2] - x[0]);
+}
+
 // a_i, a share of each facet beside it: the derivative of the volume by the point's place.
 template <int dim>
 void
@@ -129,18 +146,12 @@ Fluid<dim>::find_surface_areas()
   surface_area.assign(points.size(), Vector());
   for (const auto &facet : surface_facets)
     {
-      std::array<Vector, dim> x;
-      for (unsigned int i = 0; i < dim; ++i)
-        x[i] = points.position[facet[i]] + scratch[facet[i]];
-      Vector area;
-      if constexpr (dim == 2)
-        area = cross_product_2d(x[1] - x[0]);
-      else
-        area = 0.5 * cross_product_3d(x[1] - x[0], x[2] - x[0]);
+      const Vector area = facet_area(facet);
       for (const unsigned int node : facet)
         surface_area[node] += area / dim;
     }
   halo.sum_to_owners(surface_area);
+  find_wall_areas();
   halo.update(surface_area);
 }
 
@@ -222,6 +233,15 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
         right_side[i] += factor * swelling * moved_volume[i] - surface_area[i] * scratch[i];
         surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_volume[i];
       }
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    if (const auto &node = structures.nodes[i - n_cloud]; !no_pressure[i])
+      {
+        const Vector &area = wall_area[i - n_cloud];
+        right_side[i] -= factor * (area * node.velocity);
+        if (node.rigid < 0)
+          for (unsigned int d = 0; d < dim; ++d)
+            surface[i] += options.density / theta * area[d] * area[d] * node.inverse_mass[d];
+      }
   pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure);
   if (iteration == 0)
     pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
@@ -232,6 +252,7 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
                                               options.solver,
                                               [this](double *result, const double *p) {
                                                 add_surface_terms(result, p);
+                                                add_rigid_bodies(result, p);
                                               });
   ++pressure_solves;
   pressure_iterations += last_pressure_solve.iterations;
@@ -275,7 +296,7 @@ Fluid<dim>::correct(const double dt)
 {
   FluidOperators<dim>(mesh, moved_rules, halo).gradient(pressure, gradient);
   corrected = predicted;
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     {
       if (!isolated[i])
         {
@@ -285,6 +306,7 @@ Fluid<dim>::correct(const double dt)
         }
       moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
     }
+  move_structures(dt, true);
   halo.update(moving);
   halo.update(corrected);
 }
@@ -296,7 +318,7 @@ Fluid<dim>::move(const double dt)
 {
   book_step(dt);
   const auto corners = options.box.get_boundary_points();
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     {
       dealii::Point<dim> x      = points.position[i] + dt * moving[i];
       unsigned int       on     = held_walls(i);
@@ -345,7 +367,7 @@ void
 Fluid<dim>::book_step(const double dt)
 {
   double kinetic = 0;
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     {
       const double mass  = options.density * moved_volume[i];
       const Vector mean  = 0.5 * (velocity[i] + corrected[i]);
@@ -372,7 +394,7 @@ Fluid<dim>::check_numbers()
 {
   if (failure)
     return;
-  for (std::size_t i = 0; i < points.n_own; ++i)
+  for (std::size_t i = 0; i < n_cloud; ++i)
     if (!std::isfinite(corrected[i].norm_square()) || !std::isfinite(pressure[i]))
       {
         std::ostringstream details;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/coupling/structure_system.h>
 #include <coracle/grid/box_boundary.h>
 #include <coracle/meshless/fluid.h>
 
@@ -25,6 +26,7 @@ public:
   MeshlessSystem(const Parameters             &root,
                  const dealii::Tensor<1, dim> &gravity,
                  const Octree<dim>            &octree,
+                 StructureSystem<dim>         &structure,
                  const bool                    with_points);
 
   bool empty() const { return bodies.empty(); }
@@ -34,7 +36,7 @@ public:
   {
     std::uint64_t n = 0;
     for (const auto &body : bodies)
-      n += body.points.n_own;
+      n += body.n_fluid();
     return n;
   }
 
@@ -43,15 +45,17 @@ public:
   /// Whose that is, for messages. Collective.
   std::string describe_limit() const;
 
-  /// Velocities, pressures and positions at the end of the step. Collective.
-  void advance(const double time, const double dt, TimingTable &timed);
-  /// Points that left or are crowded go, gaps are filled. Collective.
-  void refill();
+  /// Velocities, pressures and positions at the end of the step; impulses on structures, whose
+  /// velocities are predicted. Collective.
+  void
+  advance(const double time, const double dt, StructureSystem<dim> &structure, TimingTable &timed);
+  /// Points that left or are crowded go, gaps are filled; structures have moved. Collective.
+  void refill(StructureSystem<dim> &structure);
   /// New elements. Collective.
   void remesh();
 
-  /// Between steps. Collective.
-  void serialize(Archive &archive);
+  /// Between steps; structures are loaded before. Collective.
+  void serialize(Archive &archive, StructureSystem<dim> &structure);
 
   /// The first thing that went wrong on this rank, see MaterialPointSystem.
   std::optional<RunFailure> failure;
@@ -59,6 +63,11 @@ public:
   std::list<meshless::Fluid<dim>> bodies;
 
 private:
+  void look_at(StructureSystem<dim> &structure, meshless::Fluid<dim> &fluid) const;
+  void push(StructureSystem<dim> &structure, const meshless::Fluid<dim> &fluid) const;
+
+  MPI_Comm comm;
+
   void generate(const Parameters &body, const Octree<dim> &octree, meshless::Fluid<dim> &fluid);
 };
 } // namespace coracle

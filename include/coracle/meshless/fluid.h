@@ -6,6 +6,7 @@
 #include <coracle/base/timer.h>
 #include <coracle/meshless/fluid_operators.h>
 #include <coracle/meshless/fluid_options.h>
+#include <coracle/meshless/structure_walls.h>
 #include <coracle/meshless/volume_change.h>
 
 #include <optional>
@@ -80,6 +81,19 @@ public:
   /// Collective.
   void refill();
 
+  /// Surfaces that the fluid meets, as they are now: before advance() with the velocities that
+  /// their bodies would have without the fluid, before refill() and remesh() as they have moved.
+  StructureWalls<dim> structures;
+  /// Impulses of the step on rigid bodies, the same on all ranks, and on nodes of `structures`.
+  std::vector<typename StructureWalls<dim>::Push> rigid_impulses;
+  std::vector<Vector>                             node_impulses;
+  /// Points that start in a structure, or nearer to a node of one than half a spacing, go.
+  /// Collective.
+  void clear_structures();
+
+  /// Points of the fluid on this rank; those of structures follow.
+  std::size_t n_fluid() const { return columns.size(); }
+
   /// Between steps; remesh() is called when loaded. Collective.
   void serialize(Archive &archive);
 
@@ -142,6 +156,7 @@ private:
   void         move_elements(const double dt, const unsigned int iteration);
   void         predict(const double time, const double dt);
   void         diffuse(const double dt);
+  Vector       facet_area(const typename Tessellation<dim>::Facet &facet) const;
   void         find_surface_areas();
   void         add_surface_terms(double *result, const double *p);
   void         solve_pressure(const double dt, const unsigned int iteration);
@@ -153,14 +168,21 @@ private:
   void         book_step(const double dt);
   void         check_numbers();
   void         new_positions(std::vector<dealii::Point<dim>> &x) const;
-  void         find_strays(std::vector<unsigned char> &taken_out);
-  void         find_corner_twins(std::vector<unsigned char> &taken_out);
-  void         find_crowded(const std::vector<dealii::Point<dim>> &x,
-                            std::vector<unsigned char>            &taken_out);
-  void         insert(const std::vector<dealii::Point<dim>> &x);
-  void         insert_between(const std::array<unsigned int, 2>     &rows,
-                              const std::vector<dealii::Point<dim>> &x,
-                              const std::uint64_t                    id);
+  void         add_structure_points();
+  bool is_structure(const std::size_t row) const { return points.kind[row] == PointKind::wall; }
+  void find_wall_areas();
+  void move_structures(const double dt, const bool with_pressure);
+  void add_rigid_bodies(double *result, const double *p) const;
+  void find_inside(const std::vector<dealii::Point<dim>> &x, std::vector<unsigned char> &taken_out);
+  void find_flattened(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
+  void find_strays(std::vector<unsigned char> &taken_out);
+  void find_corner_twins(std::vector<unsigned char> &taken_out);
+  void find_crowded(const std::vector<dealii::Point<dim>> &x,
+                    std::vector<unsigned char>            &taken_out);
+  void insert(const std::vector<dealii::Point<dim>> &x);
+  void insert_between(const std::array<unsigned int, 2>     &rows,
+                      const std::vector<dealii::Point<dim>> &x,
+                      const std::uint64_t                    id);
 
   static constexpr unsigned int steps_between_balances = 50;
 
@@ -174,11 +196,15 @@ private:
   /// Where the pressure is not solved for: drops, or one point of a fluid without a surface.
   std::vector<unsigned char> no_pressure;
   /// Facets of the free surface, and elements with a point of it, here.
-  std::vector<typename Tessellation<dim>::Facet> surface_facets;
+  std::vector<typename Tessellation<dim>::Facet> surface_facets, wall_facets;
   std::vector<unsigned int>                      surface_elements;
   /// a_i of own points and copies [m^(dim-1)].
   std::vector<Vector> surface_area, pushed;
   std::vector<double> surface_pressure, driven;
+  /// The same of structure nodes, all facets beside them; by node.
+  std::vector<Vector> wall_area;
+  std::size_t         n_cloud = 0;
+  double              last_dt = 0;
   Books               energy;
   std::uint64_t       next_id        = 0;
   double              current_volume = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/meshless/cells.h>
+#include <coracle/meshless/simplex.h>
 
 #include <deal.II/base/tensor.h>
 
@@ -60,20 +61,6 @@ measure(const std::array<Tensor<1, 3>, 3> &edge, Tensor<1, 3> &center)
   return six;
 }
 
-/// Square of (dim - 1)! times the measure of the facet that lacks the i-th node.
-double
-facet_square(const std::array<Tensor<1, 2>, 2> &edge, const unsigned int i)
-{
-  return i == 0 ? (edge[1] - edge[0]).norm_square() : edge[2 - i].norm_square();
-}
-
-double
-facet_square(const std::array<Tensor<1, 3>, 3> &edge, const unsigned int i)
-{
-  return i == 0 ? cross_product_3d(edge[1] - edge[0], edge[2] - edge[0]).norm_square()
-                : cross_product_3d(edge[i % 3], edge[(i + 1) % 3]).norm_square();
-}
-
 template <int dim>
 void
 measure_cell(Cells<dim> &cells, const unsigned int c, const PointCloud<dim> &points)
@@ -90,14 +77,11 @@ measure_cell(Cells<dim> &cells, const unsigned int c, const PointCloud<dim> &poi
       spacing += points.spacing[node[i + 1]];
     }
   Tensor<1, dim> center;
-  const double   size   = measure(edge, center);
-  double         facets = 0.;
-  for (unsigned int i = 0; i <= dim; ++i)
-    facets = std::max(facets, facet_square(edge, i));
+  const double   size = measure(edge, center);
 
   cells.spacing[c] = spacing / (dim + 1);
   cells.volume[c]  = std::max(size, 0.) / factorial;
-  cells.height[c]  = std::max(size, 0.) / std::sqrt(facets);
+  cells.height[c]  = std::max(size, 0.) / largest_facet(edge);
   cells.center[c]  = origin + center;
   cells.radius[c]  = center.norm();
   if (!(size > 0.) || !std::isfinite(cells.radius[c]))

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace coracle::meshless
 {
@@ -34,7 +33,7 @@ LaplaceShape<dim>::reinit(const PointCloud<dim>   &points,
       gradients.resize(n * n_points());
       for (unsigned int q = 0; q < n_points(); ++q)
         evaluate(quadrature[q], &values[q * n], &gradients[q * n]);
-      make_consistent(tessellation.volume[element]);
+      make_consistent();
     }
 }
 
@@ -89,10 +88,6 @@ LaplaceShape<dim>::set_quadrature(const PointCloud<dim>   &points,
             Point<dim>(others + (near_corner<dim> - (1. - near_corner<dim>) / dim) * x[i]));
         }
     }
-  // What slivers have of the volume goes to the others.
-  const double total = std::accumulate(weights.begin(), weights.end(), 0.);
-  for (double &weight : weights)
-    weight *= tessellation.volume[element] / total;
 }
 
 template <int dim>

@@ -270,7 +270,7 @@ private:
     for (unsigned int f = 0; f < n; ++f)
       result.face.push_back(f);
     if (dim == 2)
-      return;
+      return; // nothing to look for
     const auto face = result.face.begin() + begin;
     for (bool changed = true; changed;)
       {
@@ -287,26 +287,26 @@ private:
       }
   }
 
-  /// Do two facets share an edge, and is it flat within the tolerance?
+  /// Do two triangles share an edge, and are they so flat that between them there is but a sliver?
   bool in_one_plane(const std::array<unsigned int, dim> &a,
                     const std::array<unsigned int, dim> &b) const
   {
-    unsigned int n_shared = 0;
-    for (const unsigned int node : a)
-      n_shared += std::count(b.begin(), b.end(), node);
-    if (n_shared != dim - 1)
-      return false;
-    const auto normal = [&](const std::array<unsigned int, dim> &facet) {
-      std::array<dealii::Point<dim>, dim> x;
-      for (unsigned int i = 0; i < dim; ++i)
-        x[i] = points.position[facet[i]];
-      return normal_of(x);
-    };
-    const auto   m = normal(a), n = normal(b);
-    const double cosine = m * n, both = m.norm() * n.norm();
-    // The sine, without its loss of digits near zero.
-    const double sine = (m / m.norm() - n / n.norm()).norm();
-    return cosine > 0. && both > 0. && sine < 5. * options.merge_tolerance + 1e-8;
+    std::array<dealii::Point<dim>, dim>     x, y;
+    std::array<dealii::Point<dim>, dim + 1> all;
+    unsigned int                            n_shared = 0;
+    double                                  spacing  = 0.;
+    for (unsigned int i = 0; i < dim; ++i)
+      {
+        all[i] = x[i] = points.position[a[i]];
+        y[i]          = points.position[b[i]];
+        spacing += points.spacing[a[i]] / dim;
+        if (std::find(a.begin(), a.end(), b[i]) != a.end())
+          ++n_shared;
+        else
+          all[dim] = y[i];
+      }
+    return n_shared == dim - 1 && normal_of(x) * normal_of(y) > 0. &&
+           least_height<dim>(all) <= options.merge_tolerance * spacing;
   }
 
   const Cells<dim>               &cells;

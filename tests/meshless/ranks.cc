@@ -201,6 +201,13 @@ test()
       compare("one has all", whole, part(whole, [&](auto) { return n - 1; }), options);
     }
   balance(whole);
+  // Rows that have moved as far as the tolerance: some merge, some do not.
+  for (const double tolerance : {1e-6, 1e-3, 0.1})
+    {
+      auto rows = grid<dim>(dim == 2 ? 14 : 7, 0.1);
+      perturb(rows, 0.1 * tolerance, 4);
+      compare("near the tolerance", rows, part(rows, slabs), {1.3, tolerance});
+    }
 }
 
 int

@@ -44,7 +44,8 @@ public:
 
   unsigned int n_nodes() const { return n; }
   unsigned int n_points() const { return weights.size(); }
-  /// Quadrature weight: the weights of an element add up to its volume [m^dim].
+  /// Quadrature weight: the weights of an element add up to its volume [m^dim]; where it has a face
+  /// that is bent within the tolerance of merging, to what a smooth surface there encloses.
   double weight(const unsigned int q) const { return weights[q]; }
   /// Where [m].
   const dealii::Point<dim> &point(const unsigned int q) const { return quadrature[q]; }
@@ -76,10 +77,11 @@ private:
                       const unsigned int       element);
   void set_facets(const Tessellation<dim> &tessellation, const unsigned int element);
   void pair_facets();
-  void make_consistent(const double volume);
+  void make_consistent();
   /// Integrals over the surface of a function times the outward normal, for each node's function.
   void integrate_surface();
-  void integrate_planar_face(const std::vector<unsigned int> &of_face, const unsigned int face);
+  void integrate_polygon(const unsigned int face);
+  void evaluate_polygon(const dealii::Point<dim> &x, const dealii::Tensor<1, dim> &normal);
 
   unsigned int                        n = 0;
   std::vector<dealii::Point<dim>>     nodes;
@@ -92,6 +94,11 @@ private:
   std::vector<std::array<unsigned int, 4>> pairs;
   std::vector<std::array<unsigned int, 3>> unpaired;
   std::vector<dealii::Tensor<1, dim>>      surface;
+  /// Of the polygon at work: its edges, the nodes in its plane, functions and their integrals.
+  std::vector<std::pair<unsigned int, unsigned int>> rim;
+  std::vector<dealii::Point<dim>>                    in_plane;
+  std::vector<double>                                face_value, face_integral;
+  std::vector<dealii::Tensor<1, dim>>                face_gradient;
 
   mutable std::vector<dealii::Point<dim>>     corners;
   mutable std::vector<dealii::Tensor<1, dim>> slides, faces;

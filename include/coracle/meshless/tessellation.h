@@ -17,7 +17,7 @@ struct TessellationOptions
   double alpha = 1.3;
   /// Share of h within which circumcentres count as one, and below which the height of a simplex
   /// counts as none (a sliver).
-  double merge_tolerance = 1e-6;
+  double merge_tolerance = 1e-3;
 
   /// How far from its own points a rank must know those of others, with `spacing` the largest of
   /// all points [m]: an element and its neighbours.

@@ -40,6 +40,24 @@ Fluid<dim>::clear_structures()
   counts.created = mpi::sum<std::uint64_t>(kept.size(), comm);
 }
 
+// Faces of the box where a node of a structure stands: between it and the fluid's points there the
+// boundary is wall.
+template <int dim>
+unsigned char
+Fluid<dim>::faces_at(const dealii::Point<dim> &x) const
+{
+  const auto    corners = options.box.get_boundary_points();
+  unsigned char faces   = 0;
+  for (unsigned int face = 0; face < 2 * dim; ++face)
+    {
+      const double place = face % 2 == 0 ? corners.first[face / 2] : corners.second[face / 2];
+      if (options.walls[face] != Wall::open &&
+          std::fabs(x[face / 2] - place) < 1e-3 * options.spacing)
+        faces |= 1u << face;
+    }
+  return faces;
+}
+
 // Rows behind the fluid's own.
 template <int dim>
 void
@@ -53,7 +71,7 @@ Fluid<dim>::add_structure_points()
       points.kind.push_back(PointKind::wall);
       velocity.push_back(node.velocity);
       pressure.push_back(0.);
-      walls.push_back(0);
+      walls.push_back(faces_at(node.position));
     }
   points.n_own = n_cloud + structures.nodes.size();
 }

@@ -149,26 +149,27 @@ public:
   const FluidOptions<dim>                options;
 
 private:
-  void         fill_cloud();
-  void         find_free_surface();
-  unsigned int held_walls(const std::size_t row) const;
-  void         set_wall_velocity(const std::size_t row, Vector &v) const;
-  void         move_elements(const double dt, const unsigned int iteration);
-  void         predict(const double time, const double dt);
-  void         diffuse(const double dt);
-  Vector       facet_area(const typename Tessellation<dim>::Facet &facet) const;
-  void         find_surface_areas();
-  void         add_surface_terms(double *result, const double *p);
-  void         solve_pressure(const double dt, const unsigned int iteration);
-  void         correct(const double dt);
-  void         move(const double dt);
-  void         balance();
-  void         find_moved_boundary();
-  void         find_volume();
-  void         book_step(const double dt);
-  void         check_numbers();
-  void         new_positions(std::vector<dealii::Point<dim>> &x) const;
-  void         add_structure_points();
+  void          fill_cloud();
+  void          find_free_surface();
+  unsigned int  held_walls(const std::size_t row) const;
+  void          set_wall_velocity(const std::size_t row, Vector &v) const;
+  void          move_elements(const double dt, const unsigned int iteration);
+  void          predict(const double time, const double dt);
+  void          diffuse(const double dt);
+  Vector        facet_area(const typename Tessellation<dim>::Facet &facet) const;
+  void          find_surface_areas();
+  void          add_surface_terms(double *result, const double *p);
+  void          solve_pressure(const double dt, const unsigned int iteration);
+  void          correct(const double dt);
+  void          move(const double dt);
+  void          balance();
+  void          find_moved_boundary();
+  void          find_volume();
+  void          book_step(const double dt);
+  void          check_numbers();
+  void          new_positions(std::vector<dealii::Point<dim>> &x) const;
+  void          add_structure_points();
+  unsigned char faces_at(const dealii::Point<dim> &x) const;
   bool is_structure(const std::size_t row) const { return points.kind[row] == PointKind::wall; }
   void find_wall_areas();
   void move_structures(const double dt, const bool with_pressure);

@@ -38,6 +38,7 @@ Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
   last_dt = dt;
   surface_pressure.resize(points.size());
   move_structures(dt, false);
+  halo.update(moving);
   for (unsigned int iteration = 0; iteration < options.n_iterations; ++iteration)
     {
       timed("elements", [&] { move_elements(dt, iteration); });

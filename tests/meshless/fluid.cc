@@ -94,6 +94,7 @@ linear_fields()
           worst_laplacian = std::max(worst_laplacian, laplacian[i].norm() / m);
         }
     }
+  std::cerr << dim << ' ' << worst << ' ' << worst_flow << ' ' << worst_laplacian << '\n';
   deallog << "gradient: " << (mpi::max(worst, comm) < 1e-11)
           << ", divergence: " << (mpi::max(worst_flow, comm) < 1e-11)
           << ", Laplacian: " << (mpi::max(worst_laplacian, comm) < 1e-9) << std::endl;

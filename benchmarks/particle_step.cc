@@ -69,7 +69,7 @@ whole_step(const unsigned int n, const unsigned int n_steps, const bool hanging_
   const MaterialLibrary materials(parameters);
   dealii::Tensor<1, 3>  gravity;
   gravity[2] = -9.81;
-  MaterialPointSystem<3> points(parameters, materials, gravity, 0, MPI_COMM_WORLD);
+  MaterialPointSystem<3> points(parameters, materials, gravity, {}, MPI_COMM_WORLD);
 
   const double dt = 0.3 / n / sound_speed;
   Figures      seconds;

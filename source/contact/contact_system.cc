@@ -166,8 +166,15 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
                          const std::vector<PointSet<dim>> &points,
                          const double                      dt)
 {
-  const Extremes extremes = measure(owned, points);
-  const double   travel   = 2 * dt * (extremes.point_speed + extremes.node_speed);
+  const Extremes                    extremes = measure(owned, points);
+  typename LocalSearch<dim>::Motion motion{dt,
+                                           extremes.point_speed,
+                                           extremes.node_speed,
+                                           extremes.radius};
+  // The others take all that is listed for contacts.
+  if (options.local_search != LocalMethod::nearest_on_surface)
+    motion.radius = 0;
+  const double travel = motion.travel();
   ++steps_since_change;
   if (extremes.changed > 0 || used + extremes.movement + travel > reach)
     rebuild(owned, points, extremes, travel);
@@ -177,9 +184,7 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
   used += movement_margin * dt * extremes.point_speed;
 
   // The band only needs the speeds of points that have something to touch.
-  typename LocalSearch<dim>::Motion motion;
-  motion.dt         = dt;
-  motion.node_speed = extremes.node_speed;
+  motion.point_speed = 0;
   for (unsigned int s = 0; s < points.size(); ++s)
     for (const unsigned int p : search.candidates(s).point)
       motion.point_speed = std::max(motion.point_speed, points[s].point_velocity(p).norm_square());

@@ -341,7 +341,10 @@ LocalSearch<dim>::within_band(const PointSet<dim> &points,
 {
   const double speed = std::max(relative_velocity(points, pair).norm(),
                                 0.25 * (motion.point_speed + motion.node_speed));
-  return contact.gap < contact.distance + 2 * motion.dt * speed;
+  return contact.gap <
+         contact.distance +
+           std::max(least_band * std::min(motion.radius, points.radius(contact.point)),
+                    2 * motion.dt * speed);
 }
 
 template <int dim>

@@ -12,6 +12,26 @@ using Layout = ParticleLayout<dim>;
 // Keys of grid nodes start where no structure node's key can be.
 constexpr std::uint64_t first_grid_key = std::uint64_t(1) << 62;
 constexpr unsigned int  field_shift    = 48;
+
+/// Of the surfaces that a particle touches: share * n n, less of what the ones before have already.
+template <int dim>
+dealii::SymmetricTensor<2, dim>
+touch_of(const contact::Contact<dim> *const first,
+         const contact::Contact<dim> *const last,
+         const double                       share,
+         const double                       fade)
+{
+  dealii::SymmetricTensor<2, dim> result;
+  for (const auto *contact = first; contact != last; ++contact)
+    {
+      double left = 1 - std::max(0., contact->gap - contact->distance) / fade;
+      for (const auto *other = first; other != contact; ++other)
+        left = std::min(left, 1 - std::pow(contact->normal * other->normal, 2));
+      if (left > 0)
+        result += share * left * symmetrize(outer_product(contact->normal, contact->normal));
+    }
+  return result;
+}
 } // namespace
 
 template <int dim>
@@ -86,6 +106,40 @@ ContactCoupling<dim>::find(MaterialPointSystem<dim> &points,
   const auto &surface = structure.publish_surface();
   surface_nodes.fill(surface, sets.begin() + points.bodies.size());
   system.find(surface, sets, dt);
+  note_touched(points);
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::note_touched(MaterialPointSystem<dim> &points) const
+{
+  for (auto &body : points.bodies)
+    {
+      for (const unsigned int row : body.points.touched)
+        body.points.set_touch(row, {});
+      body.points.touched.clear();
+    }
+  const auto &contacts = system.contacts();
+  for (std::size_t c = 0, next = 0; c < contacts.size(); c = next)
+    {
+      if (contacts[c].set >= points.bodies.size())
+        return;
+      for (next = c; next < contacts.size() && contacts[next].set == contacts[c].set &&
+                     contacts[next].point == contacts[c].point;)
+        ++next;
+      auto &body = *std::next(points.bodies.begin(), contacts[c].set);
+      if (body.points.layout().touch < 0)
+        continue;
+      const auto touch =
+        touch_of(contacts.data() + c,
+                 contacts.data() + next,
+                 std::min(0.5, body.radius_factor),
+                 contact::LocalSearch<dim>::least_band * radii[contacts[c].set][contacts[c].point]);
+      if (touch.norm() == 0)
+        continue;
+      body.points.set_touch(contacts[c].point, touch);
+      body.points.touched.push_back(contacts[c].point);
+    }
 }
 
 template <int dim>

@@ -85,6 +85,11 @@ Coupling<dim>::declare(Declaration &root)
     true,
     "Grid nodes that a sheet cuts off from some particles have a velocity for each side, "
     "so that what is on one side does not feel the other through it");
+  contact.flag(
+    "Rigid half",
+    true,
+    "The half of a particle between its centre, where contact acts, and the surface that it "
+    "touches does not deform, so that the pressure in what rests against a surface is right");
 }
 
 template <int dim>
@@ -92,7 +97,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
   , structure(root, materials, options.gravity, comm)
-  , points(root, materials, options.gravity, structure.n_sheets(), comm, saved_octree)
+  , points(root, materials, options.gravity, met_surfaces(root), comm, saved_octree)
   , fluids(root, options.gravity, points.octree, structure, saved_octree.empty())
   , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
   , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
@@ -102,7 +107,19 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
     {
       projected = contacts.resolve_initial_overlaps(root, points, structure);
       adaptivity.initialise(points, structure, contacts);
+      // What starts on a surface touches it in the first step already.
+      contacts.find(points, structure, 0);
     }
+}
+
+template <int dim>
+MetSurfaces
+Coupling<dim>::met_surfaces(const Parameters &root) const
+{
+  const Parameters contact = root.section("Contact");
+  return {static_cast<int>(structure.n_sheets()),
+          structure.n_bodies() > 0 && contact.choice("Method") == "surface" &&
+            contact.flag("Rigid half")};
 }
 
 template <int dim>
@@ -158,8 +175,10 @@ Coupling<dim>::advance(const double end_time)
   const double left = end_time - current_time;
   dt                = left <= dt ? left : std::min(dt, 0.5 * left);
 
-  if (options.split_fields && structure.n_sheets() > 0)
-    timed("field split", [&] { points.split_fields(structure.publish_surface()); });
+  if (structure.n_bodies() > 0)
+    timed("points at surfaces", [&] {
+      points.cut(options.split_fields ? structure.publish_surface() : contact::Surface<dim>());
+    });
   timed("particles to grid", [&] {
     points.gather(current_time, dt);
     timed.count("particle", points.n_particles());

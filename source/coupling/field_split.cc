@@ -74,7 +74,11 @@ FieldSplit<dim>::update(const contact::Surface<dim>       &surface,
                         NodeSplit<dim>                    &split)
 {
   if (!select_sheets(surface))
-    return;
+    {
+      for (auto &body : bodies)
+        cut(body, split);
+      return;
+    }
   split.clear();
   const bool gimp = std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
     return body.margin_of_shape() > 0;
@@ -267,12 +271,18 @@ FieldSplit<dim>::find_candidates(const MaterialPointBody<dim> &body)
             is_inside_leaf(octree, leaf, points.position(row), body.margin_of_shape() * size[row]))
           candidates.push_back({row, place});
     }
+  // Where no sheet has been looked for, there are no places.
   for (const auto &stray : points.strays)
-    if (const int place = place_of_leaf[stray.leaf]; place >= 0)
+    if (const int place = place_of_leaf.empty() ? -1 : place_of_leaf[stray.leaf]; place >= 0)
       candidates.push_back({stray.row, static_cast<unsigned int>(place)});
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate &a, const Candidate &b) {
-    return a.row < b.row;
-  });
+  const auto by_row = [](const Candidate &a, const Candidate &b) { return a.row < b.row; };
+  std::sort(candidates.begin(), candidates.end(), by_row);
+  const std::size_t n = candidates.size();
+  for (const unsigned int row : points.touched)
+    if (!points.is_hole(row) &&
+        !std::binary_search(candidates.begin(), candidates.begin() + n, Candidate{row, 0}, by_row))
+      candidates.push_back({row, nowhere});
+  std::inplace_merge(candidates.begin(), candidates.begin() + n, candidates.end(), by_row);
 }
 
 template <int dim>
@@ -317,6 +327,13 @@ FieldSplit<dim>::cut(MaterialPointBody<dim> &body, NodeSplit<dim> &split)
   const double *const size = body.points.column(ParticleLayout<dim>::size);
   for (const auto &[row, place] : candidates)
     {
+      if (place == nowhere)
+        {
+          cutter.cut(row, octree.find(body.points.position(row)), [](const unsigned int) {
+            return 0;
+          });
+          continue;
+        }
       const typename Crossing::List list{near.data() + begin[place],
                                          near.data() + begin[place + 1]};
       const auto                    side = [&, r = row](const int sheet) {

@@ -11,7 +11,7 @@ namespace coracle
 namespace
 {
 ParticleNeeds
-find_needs(const MaterialVariant &material, const Parameters &body, const int n_sheets)
+find_needs(const MaterialVariant &material, const Parameters &body, const MetSurfaces &met)
 {
   ParticleNeeds needs;
   std::visit(
@@ -23,7 +23,8 @@ find_needs(const MaterialVariant &material, const Parameters &body, const int n_
     },
     material);
   needs.affine   = body.choice("Velocity transfer") == "apic";
-  needs.n_sheets = n_sheets;
+  needs.touches  = met.can_touch;
+  needs.n_sheets = met.n_sheets;
   return needs;
 }
 
@@ -157,9 +158,9 @@ template <int dim>
 MaterialPointBody<dim>::MaterialPointBody(const Parameters      &body,
                                           const MaterialLibrary &materials,
                                           const Octree<dim>     &octree,
-                                          const int              n_sheets,
+                                          const MetSurfaces     &met,
                                           const bool             with_particles)
-  : points(body.name(), find_needs(materials.get(body.text("Material"), body), body, n_sheets))
+  : points(body.name(), find_needs(materials.get(body.text("Material"), body), body, met))
   , material(materials.get(body.text("Material"), body))
   , volume_strain(body.choice("Volume strain") == "particle" ? VolumeStrain::particle
                                                              : VolumeStrain::cell_mean)

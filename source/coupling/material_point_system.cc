@@ -38,7 +38,7 @@ template <int dim>
 MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root,
                                               const MaterialLibrary        &materials,
                                               const dealii::Tensor<1, dim> &gravity,
-                                              const int                     n_sheets,
+                                              const MetSurfaces            &met,
                                               MPI_Comm                      comm,
                                               const std::string            &saved_octree)
   : octree(OctreeDescription<dim>::read(root.section("Grid")),
@@ -53,7 +53,7 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
     if (section.section(name).choice("Kind") == "material points")
-      bodies.emplace_back(section.section(name), materials, octree, n_sheets, saved_octree.empty());
+      bodies.emplace_back(section.section(name), materials, octree, met, saved_octree.empty());
   make_fields();
   for (auto &body : bodies)
     energy.kinetic += body.points.kinetic_energy();
@@ -78,6 +78,9 @@ MaterialPointSystem<dim>::serialize(Archive &archive)
   archive.share("energy.external_work", energy.external_work);
   archive.same("steps_since_sort", steps_since_sort);
   archive.own("renumbered", renumbered);
+  if (archive.loads())
+    for (auto &body : bodies)
+      body.points.find_touched();
 }
 
 template <int dim>
@@ -171,8 +174,11 @@ MaterialPointSystem<dim>::describe_limit() const
 
 template <int dim>
 void
-MaterialPointSystem<dim>::split_fields(const contact::Surface<dim> &surface)
+MaterialPointSystem<dim>::cut(const contact::Surface<dim> &surface)
 {
+  if (renumbered)
+    for (auto &body : bodies)
+      body.points.find_touched();
   sides.update(surface, bodies, split);
 }
 

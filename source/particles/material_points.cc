@@ -106,6 +106,36 @@ MaterialPoints<dim>::serialize(Archive &archive)
 }
 
 template <int dim>
+dealii::SymmetricTensor<2, dim>
+MaterialPoints<dim>::touch(const std::size_t row) const
+{
+  dealii::SymmetricTensor<2, dim> result;
+  if (columns_layout.touch >= 0)
+    for (unsigned int k = 0; k < result.n_independent_components; ++k)
+      result.access_raw_entry(k) = columns[columns_layout.touch + k][row];
+  return result;
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::set_touch(const std::size_t row, const dealii::SymmetricTensor<2, dim> &touch)
+{
+  for (unsigned int k = 0; k < touch.n_independent_components; ++k)
+    columns[columns_layout.touch + k][row] = touch.access_raw_entry(k);
+}
+
+template <int dim>
+void
+MaterialPoints<dim>::find_touched()
+{
+  touched.clear();
+  if (columns_layout.touch >= 0)
+    for (std::size_t row = 0; row < n_rows(); ++row)
+      if (!is_hole(row) && touch(row).norm() > 0)
+        touched.push_back(row);
+}
+
+template <int dim>
 double
 MaterialPoints<dim>::kinetic_energy() const
 {

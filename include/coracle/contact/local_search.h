@@ -37,20 +37,29 @@ namespace coracle::contact
  *
  * Band: R + 2 dt times the relative speed of point and facet, but at least a
  * quarter of the greatest relative speed, so that a point at rest which is hit
- * within the step is not overlooked.
+ * within the step is not overlooked, and a tenth of the point's radius, so that
+ * one that rests beside a surface is not when it is set in motion.
  */
 template <int dim>
 class LocalSearch
 {
 public:
+  /// Of a point's radius: what the band is at least beyond R.
+  static constexpr double least_band = 0.1;
+
   /// Greatest speeds [m/s] of candidate points and of facet nodes, and the step [s].
   struct Motion
   {
     double dt          = 0;
     double point_speed = 0;
     double node_speed  = 0;
+    /// Greatest contact radius of points [m].
+    double radius = 0;
     /// Distance beyond R within which a side is kept and contacts are looked for [m].
-    double travel() const { return 2 * dt * (point_speed + node_speed); }
+    double travel() const
+    {
+      return std::max(least_band * radius, 2 * dt * (point_speed + node_speed));
+    }
   };
 
   explicit LocalSearch(const LocalMethod method = LocalMethod::nearest_on_surface) : method(method)

@@ -76,6 +76,8 @@ public:
   void serialize(Archive &archive, MaterialPointSystem<dim> &points);
 
 private:
+  /// Which particles touch a surface now, for their shape functions in the next step.
+  void note_touched(MaterialPointSystem<dim> &points) const;
   void solve_on_grid(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
   void solve_on_surface(MaterialPointSystem<dim> &points,
                         StructureSystem<dim>     &structure,

@@ -62,7 +62,9 @@ public:
   double worst_gap = 0;
 
 private:
-  void share_out();
+  /// Of the structure, for the points.
+  MetSurfaces met_surfaces(const Parameters &root) const;
+  void        share_out();
   /// A step far below the first one is a RunFailure that says what asks for it.
   void check_time_step(const double dt);
   /// Who asks for the step. Collective.

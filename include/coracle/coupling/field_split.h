@@ -39,11 +39,13 @@ public:
 private:
   using Crossing = contact::SheetCrossing<dim>;
 
-  /// A particle whose leaf is near a sheet, with the leaf's place in near_leaves.
+  /// A particle whose leaf is near a sheet, with the leaf's place in near_leaves, or one that
+  /// touches a surface.
   struct Candidate
   {
     unsigned int row, place;
   };
+  static constexpr unsigned int nowhere = -1;
 
   bool select_sheets(const contact::Surface<dim> &surface);
   void follow_sheets(const bool gimp);

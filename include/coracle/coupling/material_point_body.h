@@ -19,6 +19,14 @@ enum class StressUpdate
   musl
 };
 
+/// Surfaces that material points may meet.
+struct MetSurfaces
+{
+  int n_sheets = 0;
+  /// What touches a surface deforms in one half only (Contact/Rigid half).
+  bool can_touch = false;
+};
+
 /**
  * A body of material points as its section of the parameter file describes it,
  * with its particles on this rank.
@@ -34,7 +42,7 @@ public:
   MaterialPointBody(const Parameters      &body,
                     const MaterialLibrary &materials,
                     const Octree<dim>     &octree,
-                    const int              n_sheets,
+                    const MetSurfaces     &met,
                     const bool             with_particles = true);
 
   /// Between steps. Particles saved by other ranks must be handed out then, see redistribute().

@@ -25,7 +25,7 @@ public:
   MaterialPointSystem(const Parameters             &root,
                       const MaterialLibrary        &materials,
                       const dealii::Tensor<1, dim> &gravity,
-                      const int                     n_sheets,
+                      const MetSurfaces            &met,
                       MPI_Comm                      comm,
                       const std::string            &saved_octree = "");
 
@@ -38,8 +38,9 @@ public:
   /// The body that asks for the shortest step, and its fastest particle, for messages. Collective.
   std::string describe_limit() const;
 
-  /// Particles and nodes on different sides of sheets are told apart for this step. Collective.
-  void split_fields(const contact::Surface<dim> &surface);
+  /// Particles with shape functions of their own in this step: those that a sheet of this surface
+  /// cuts off from nodes, and those that touch a surface. Collective.
+  void cut(const contact::Surface<dim> &surface);
   /// Mass, momentum, internal and external force to the nodes of each field.
   void gather(const double time, const double dt);
   /// Velocities of nodes without contact.

@@ -27,21 +27,25 @@ public:
    * Rows must come in ascending order.
    * @param leaf    the leaf that the particle is in
    * @param between (node): the sheets between the particle and the node, a bit for each
-   * @return is any node that the particle reaches behind a sheet? Else it takes the usual path.
+   * @return is any node that the particle reaches behind a sheet, or does the particle touch a
+   * surface? Else it takes the usual path.
    */
   template <typename Between>
   bool cut(const unsigned int row, const unsigned int leaf, const Between &between)
   {
     collect(row);
+    const auto touch   = points.touch(row);
     auto      &entries = points.cuts.entries;
     const auto first   = points.cuts.begin.back();
-    bool       any     = false;
+    bool       any     = touch.norm() > 0;
     for (std::size_t e = first; e < entries.size(); ++e)
       if (const std::uint64_t sheets = between(entries[e].node); sheets != 0)
         {
           entries[e].node = split.record(entries[e].node, sheets);
           any             = true;
         }
+    for (std::size_t e = first; e < entries.size(); ++e)
+      entries[e].gradient -= touch * entries[e].gradient;
     if (!any)
       {
         entries.resize(first);

@@ -4,6 +4,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/meshless/point_cloud.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace coracle::meshless

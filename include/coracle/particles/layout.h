@@ -15,6 +15,8 @@ struct ParticleNeeds
   int n_history = 0;
   /// Affine velocity (APIC).
   bool affine = false;
+  /// Surfaces that a particle may touch.
+  bool touches = false;
   /// Surfaces with material on both sides, of which a particle must know its own.
   int n_sheets = 0;
 };
@@ -41,6 +43,7 @@ struct ParticleLayout
     history              = take(n_history);
     deformation_gradient = take(needs.deformation_gradient ? dim * dim : 0);
     affine               = take(needs.affine ? dim * dim : 0);
+    touch                = take(needs.touches ? Symmetric<dim, double>::size : 0);
     side                 = take(n_sheets);
     n_columns            = next;
   }
@@ -52,7 +55,11 @@ struct ParticleLayout
   static constexpr int mass = 3 * dim, density = mass + 1, size = mass + 2, id = mass + 3;
   /// Pressure or Cauchy stress [Pa].
   static constexpr int stress = mass + 4;
-  int                  n_stress, history, n_history, deformation_gradient, affine, side, n_sheets;
-  int                  n_columns;
+  int                  n_stress, history, n_history, deformation_gradient, affine;
+  /// Symmetric tensor: sum over the surfaces that the particle touches of n n times the share of
+  /// the particle that does not deform along n [1].
+  int touch;
+  int side, n_sheets;
+  int n_columns;
 };
 } // namespace coracle

@@ -8,6 +8,7 @@
 #include <coracle/particles/leaf_means.h>
 
 #include <deal.II/base/point.h>
+#include <deal.II/base/symmetric_tensor.h>
 
 #include <cstdint>
 #include <string>
@@ -81,6 +82,14 @@ public:
 
   /// In this step; they are left out of what is done with sorted rows and strays.
   CutPoints<dim> cuts;
+
+  /// Rows that touch a surface, ascending, some of which may have become holes; of no use once rows
+  /// are renumbered.
+  std::vector<unsigned int> touched;
+  /// Looks for them anew.
+  void                            find_touched();
+  dealii::SymmetricTensor<2, dim> touch(const std::size_t row) const;
+  void set_touch(const std::size_t row, const dealii::SymmetricTensor<2, dim> &touch);
 
   /// Counting sort; drops holes and strays. `cell[row]` is the home of each row (any value for a
   /// hole).

@@ -276,6 +276,14 @@ private:
                                             (body.mesh().n_sheets() > 1 ? " sheets" : " sheet")
                                         : " elements") +
             ", mass " + with_unit(body.mass(), "kg"));
+    for (const auto &body : coupling.fluids.bodies)
+      {
+        const auto summary = body.summary();
+        add("body",
+            "'" + body.name() + "', meshless fluid: " + std::to_string(summary.n_points) +
+              " points, " + std::to_string(summary.n_elements) + " elements, volume " +
+              with_unit(summary.volume, dim == 2 ? "m^2" : "m^3"));
+      }
     if (coupling.projected.n_particles > 0)
       add("moved out",
           std::to_string(coupling.projected.n_particles) +

@@ -6,6 +6,27 @@
 
 namespace coracle
 {
+namespace
+{
+/// What does not know how to be the same on any number of ranks.
+void
+refuse_irreproducible(const Parameters &root)
+{
+  const Parameters contact = root.section("Contact"), bodies = root.section("Bodies");
+  if (contact.choice("Method") == "grid" || contact.choice("Between fields") == "grid")
+    throw root.error("Reproducible",
+                     "contact on the grid's nodes is not reproducible",
+                     "Contact/Method or Contact/Between fields is grid",
+                     "set Reproducible = false, or let bodies meet at surfaces");
+  for (const std::string &name : bodies.section_names())
+    if (bodies.section(name).choice("Kind") == "meshless fluid")
+      throw root.error("Reproducible",
+                       "the meshless fluid is not reproducible",
+                       "'" + name + "' is one; its pressures are solved to a tolerance",
+                       "set Reproducible = false");
+}
+} // namespace
+
 template <int dim>
 void
 CouplingOptions<dim>::declare(Declaration &root)
@@ -46,12 +67,8 @@ CouplingOptions<dim>::read(const Parameters &root)
   const Parameters contact = root.section("Contact");
   result.split_fields = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
                         contact.choice("Between fields") != "grid";
-  if (result.reproducible &&
-      (contact.choice("Method") == "grid" || contact.choice("Between fields") == "grid"))
-    throw root.error("Reproducible",
-                     "contact on the grid's nodes is not reproducible",
-                     "Contact/Method or Contact/Between fields is grid",
-                     "set Reproducible = false, or let bodies meet at surfaces");
+  if (result.reproducible)
+    refuse_irreproducible(root);
   const auto gravity = root.list("Gravity");
   if (!gravity.empty() && gravity.size() != dim)
     throw root.error("Gravity",
@@ -79,12 +96,14 @@ Coupling<dim>::declare(Declaration &root)
   body.choice(
     "Kind",
     "material points",
-    {"material points", "solid", "rigid"},
+    {"material points", "solid", "rigid", "meshless fluid"},
     "material points: fluid, or solid that deforms without limit; solid: finite elements; "
-    "rigid: a mesh, or thin sheets, that keep their shape.");
+    "rigid: a mesh, or thin sheets, that keep their shape; meshless fluid: incompressible, points "
+    "with finite elements between them that are found anew in each step.");
   MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
   SolidBody<dim>::declare(body.when("Kind", "solid"));
   RigidBody<dim>::declare(body.when("Kind", "rigid"));
+  MeshlessSystem<dim>::declare(body.when("Kind", "meshless fluid"));
   Declaration &contact =
     root.section("Contact",
                  "Between material points and the surfaces of structures, and among structures.");
@@ -107,6 +126,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
   , materials(root)
   , structure(root, materials, options.gravity, options.reproducible, comm)
   , points(root, materials, options.gravity, met_surfaces(root), comm, saved_octree)
+  , fluids(root, options.gravity, points.octree, structure, saved_octree.empty())
   , contacts(contact::ContactOptions(root.section("Contact"), options.reproducible),
              points,
              structure,
@@ -145,6 +165,7 @@ Coupling<dim>::serialize(Archive &archive)
   archive.same("step", n_steps);
   structure.serialize(archive);
   points.serialize(archive);
+  fluids.serialize(archive, structure);
   contacts.serialize(archive, points);
   adaptivity.state.serialize(archive);
   if (!archive.is_exact())
@@ -174,7 +195,7 @@ double
 Coupling<dim>::choose_time_step() const
 {
   const double stable = std::min(structure.stable_time_step(), points.stable_time_step());
-  return std::min(options.largest_step, options.safety_factor * stable);
+  return std::min({options.largest_step, options.safety_factor * stable, fluids.step_limit()});
 }
 
 template <int dim>
@@ -199,6 +220,11 @@ Coupling<dim>::advance(const double end_time)
   timed("predictor", [&] {
     points.predict(dt);
     structure.predict_velocities(dt);
+  });
+
+  timed("meshless fluid", [&] {
+    fluids.advance(current_time, dt, structure, timed);
+    timed.count("point", fluids.n_points());
   });
 
   timed("contact search", [&] { contacts.find(points, structure, dt); });
@@ -228,9 +254,24 @@ Coupling<dim>::advance(const double end_time)
     points.locate(current_time);
     timed.count("particle", points.n_particles());
   });
+  timed("refill", [&] { fluids.refill(structure); });
+  timed("tessellation", [&] {
+    fluids.remesh();
+    timed.count("point", fluids.n_points());
+  });
   timed("adapt", [&] { adaptivity.update(points, structure, contacts, current_time, dt); });
   timed("checks", [&] { check_state(); });
   count_work();
+}
+
+template <int dim>
+std::string
+Coupling<dim>::describe_limit() const
+{
+  const double structures = structure.stable_time_step(), particles = points.stable_time_step();
+  if (fluids.step_limit() < options.safety_factor * std::min(structures, particles))
+    return fluids.describe_limit();
+  return structures < particles ? structure.describe_limit() : points.describe_limit();
 }
 
 template <int dim>
@@ -245,8 +286,7 @@ Coupling<dim>::check_time_step(const double dt)
   std::ostringstream details;
   details << "a step of " << dt << " s after one of " << current_dt << " s at t = " << current_time
           << " s (step " << n_steps << "), the first was " << first_dt << " s; "
-          << (structure.stable_time_step() < points.stable_time_step() ? structure.describe_limit()
-                                                                       : points.describe_limit());
+          << describe_limit();
   throw RunFailure("the time step has collapsed",
                    details.str(),
                    "look at what happens there; if it is meant to, lower Time/Smallest share");
@@ -262,6 +302,8 @@ Coupling<dim>::check_state() const
         throw *points.failure;
       if (structure.failure)
         throw *structure.failure;
+      if (fluids.failure)
+        throw *fluids.failure;
     },
     comm);
   const std::int64_t error = points.ledger_error();
@@ -276,7 +318,7 @@ template <int dim>
 void
 Coupling<dim>::count_work()
 {
-  particle_steps += points.n_particles();
+  particle_steps += points.n_particles() + fluids.n_points();
   const auto &report = contacts.report();
   if (report.n_contacts > 0)
     {

@@ -97,11 +97,18 @@ CouplingOutput<dim>::CouplingOutput(const Parameters     &root,
       names.push_back(body.name());
       particles.emplace_back(directory, body.name(), settings.particles);
     }
+  for (const auto &body : coupling.fluids.bodies)
+    {
+      names.push_back(body.name());
+      fluids.emplace_back(directory, body.name(), settings);
+    }
   if (settings.octree)
     octree = std::make_unique<MeshOutput>(directory, "octree");
   add_standard_columns<dim>(statistics, names);
   for (const auto &body : coupling.points.bodies)
     add_rotation_columns<dim>(statistics, body.name());
+  for (const auto &body : coupling.fluids.bodies)
+    FluidOutput<dim>::add_columns(statistics, body.name());
   statistics.add_column("contact.iterations", "");
   statistics.add_column("contact.residual", "m/s");
   statistics.add_column("contact.worst_violation", "m/s");
@@ -121,6 +128,8 @@ CouplingOutput<dim>::make_probes(const Parameters &root, Coupling<dim> &coupling
     structure_names.push_back(body.name());
   });
   for (const auto &body : coupling.points.bodies)
+    particle_names.push_back(body.name());
+  for (const auto &body : coupling.fluids.bodies)
     particle_names.push_back(body.name());
   std::vector<std::uint64_t> keys;
   for (const auto &description :
@@ -147,6 +156,9 @@ CouplingOutput<dim>::write(Coupling<dim> &coupling)
   unsigned int i = 0;
   for (auto &body : coupling.points.bodies)
     write_particles(body, particles[i++], coupling.time());
+  i = 0;
+  for (const auto &body : coupling.fluids.bodies)
+    fluids[i++].write(coupling.time(), body);
   if (settings.structures)
     {
       i = 0;
@@ -290,7 +302,9 @@ CouplingOutput<dim>::energies(const Coupling<dim> &coupling)
   result.transfer      = mpi::sum(books.transfer, comm);
   result.boundary      = mpi::sum(books.boundary, comm);
   result.external_work = mpi::sum(books.external_work, comm);
-  const auto add       = [&result](const auto &body) {
+  for (const auto &fluid : coupling.fluids.bodies)
+    FluidOutput<dim>::add_energies(fluid, comm, result);
+  const auto add = [&result](const auto &body) {
     const auto e = body.energies();
     result.kinetic += e.kinetic;
     result.strain += e.strain;
@@ -341,6 +355,11 @@ CouplingOutput<dim>::add_bodies(Report<dim> &report, Coupling<dim> &coupling)
       report.bodies.push_back(entry);
       momentum.push_back(s < given.size() ? given[s] : dealii::Tensor<1, dim>());
       ++s;
+    }
+  for (const auto &body : coupling.fluids.bodies)
+    {
+      report.bodies.push_back(FluidOutput<dim>::report(body));
+      momentum.emplace_back();
     }
   const double interval = report.time - reported_time;
   for (unsigned int b = 0; b < report.bodies.size(); ++b)
@@ -399,7 +418,8 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   row_step = coupling.step();
   statistics.begin_row();
   set_standard_columns(statistics, report);
-  auto summary = report.bodies.end() - coupling.points.bodies.size();
+  auto summary =
+    report.bodies.end() - coupling.points.bodies.size() - coupling.fluids.bodies.size();
   for (const auto &body : coupling.points.bodies)
     {
       set_rotation_columns<dim>(statistics,
@@ -407,6 +427,8 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
                                 rotation_of(body.points, summary->centre, summary->velocity, comm));
       ++summary;
     }
+  for (const auto &body : coupling.fluids.bodies)
+    FluidOutput<dim>::set_columns(statistics, body, comm);
   const auto &solver = coupling.contacts.report().solver;
   statistics.set("contact.iterations", solver.velocity.iterations);
   statistics.set("contact.residual", solver.velocity.residual);
@@ -416,6 +438,10 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   std::vector<std::uint64_t> keys;
   for (const auto &[body, probe] : body_probes)
     probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);
+  for (const auto &[name, probe] : point_probes)
+    for (const auto &body : coupling.fluids.bodies)
+      if (body.name() == name)
+        FluidOutput<dim>::set_probe(probe, body, statistics);
   for (const auto &[name, probe] : point_probes)
     for (const auto &body : coupling.points.bodies)
       if (body.name() == name)
@@ -451,6 +477,8 @@ CouplingOutput<dim>::serialize(Archive &archive)
   const Archive::Section section(archive, "output");
   mpi::agree([&] { statistics.serialize(archive); }, comm);
   for (auto &series : particles)
+    series.serialize(archive);
+  for (auto &series : fluids)
     series.serialize(archive);
   for (auto &series : structures)
     series.serialize(archive);

@@ -18,7 +18,9 @@ MeshOutput::write(const double              time,
                   const std::vector<Field> &cell_fields)
 {
   const std::size_t n_vertices = (mesh.shape == CellShape::line            ? 2
+                                  : mesh.shape == CellShape::triangle      ? 3
                                   : mesh.shape == CellShape::quadrilateral ? 4
+                                  : mesh.shape == CellShape::tetrahedron   ? 4
                                                                            : 8);
 
   // Number the nodes that are used, in the order in which cells meet them.

@@ -105,6 +105,10 @@ vtk_cell(const CellShape shape)
     {
       case CellShape::line:
         return {3, {0, 1}};
+      case CellShape::triangle:
+        return {5, {0, 1, 2}};
+      case CellShape::tetrahedron:
+        return {10, {0, 1, 2, 3}};
       case CellShape::quadrilateral:
         return {9, {0, 1, 3, 2}};
       case CellShape::hexahedron:

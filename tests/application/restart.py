@@ -96,6 +96,8 @@ for n in (1, 2):
     same_ranks("colliding_bars/colliding_bars.prm", {}, n, 400)
     # A sheet that moves cuts other cells.
     same_ranks("stacks_and_wedges/paddle.prm", {}, n, 150)
+    # Points come and go, and are shared out.
+    same_ranks("column_collapse_meshless/column_collapse_meshless.prm", {"End time": "0.2"}, n, 50)
     # The octree changes on the way, particles split and merge, ranks are balanced.
     same_ranks("adaptive_study/water_entry.prm", {"End time": "6 ms"}, n, 250)
 
@@ -106,4 +108,5 @@ for ranks in ((1, 2), (2, 1), (3, 2), (3, 4)):
 for ranks in ((1, 2), (2, 3)):
     other_ranks("colliding_bars/colliding_bars.prm", {"End time": "0.16 ms"}, *ranks, 200)
 other_ranks("folded_plate/folded_plate.prm", {**FRICTION, "End time": "3.6 ms"}, 2, 1, 200)
+other_ranks("column_collapse_meshless/column_collapse_meshless.prm", {"End time": "0.1"}, 1, 2, 100)
 test.finish()

@@ -3,6 +3,7 @@
 
 #include <coracle/base/timer.h>
 #include <coracle/coupling/adaptivity.h>
+#include <coracle/coupling/meshless_system.h>
 
 namespace coracle
 {
@@ -50,6 +51,7 @@ public:
   MaterialLibrary            materials;
   StructureSystem<dim>       structure;
   MaterialPointSystem<dim>   points;
+  MeshlessSystem<dim>        fluids;
   ContactCoupling<dim>       contacts;
   Adaptivity<dim>            adaptivity;
   TimingTable                timed;
@@ -67,6 +69,8 @@ private:
   void        share_out();
   /// A step far below the first one is a RunFailure that says what asks for it.
   void check_time_step(const double dt);
+  /// Who asks for the step. Collective.
+  std::string describe_limit() const;
   /// What went wrong on any rank, and the particle ledger: the same exception on all ranks.
   void check_state() const;
   void count_work();

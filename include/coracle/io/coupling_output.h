@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/coupling/coupling.h>
+#include <coracle/io/fluid_output.h>
 #include <coracle/io/mesh_output.h>
 #include <coracle/io/output_settings.h>
 #include <coracle/io/particle_output.h>
@@ -57,6 +58,7 @@ private:
   MPI_Comm                                                 comm;
   Statistics                                               statistics;
   std::vector<ParticleOutput>                              particles;
+  std::vector<FluidOutput<dim>>                            fluids;
   std::vector<MeshOutput>                                  structures;
   std::unique_ptr<MeshOutput>                              octree;
   std::vector<std::pair<std::string, BodyPointProbe<dim>>> body_probes;

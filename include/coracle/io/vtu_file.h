@@ -14,7 +14,9 @@ enum class CellShape
 {
   vertex,
   line,
+  triangle,
   quadrilateral,
+  tetrahedron,
   hexahedron
 };
 

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/meshless/fluid.h>
+
+#include <map>
+#include <set>
+
+namespace coracle::meshless
+{
+namespace
+{
+/// Calls action(i, j) for the pairs of nodes of each element.
+template <int dim, typename Action>
+void
+for_each_pair(const Tessellation<dim> &mesh, const Action &action)
+{
+  for (unsigned int e = 0; e < mesh.n_elements(); ++e)
+    for (unsigned int i = mesh.first_node[e]; i < mesh.first_node[e + 1]; ++i)
+      for (unsigned int j = mesh.first_node[e]; j < i; ++j)
+        action(mesh.node[i], mesh.node[j], e);
+}
+
+unsigned int
+n_faces(const unsigned int walls)
+{
+  unsigned int n = 0;
+  for (unsigned int rest = walls; rest > 0; rest &= rest - 1)
+    ++n;
+  return n;
+}
+
+/// An edge of an element that is too long; ids as doubles, so that edges travel.
+struct LongEdge
+{
+  double                      length_square = 0;
+  std::array<double, 2>       ids{};
+  std::array<unsigned int, 2> rows{};
+  unsigned int                rank = 0;
+
+  /// The longest first, ids decide ties, and so does the rank among edges found by several.
+  std::array<double, 4> key() const { return {-length_square, ids[0], ids[1], double(rank)}; }
+};
+} // namespace
+
+template <int dim>
+void
+Fluid<dim>::new_positions(std::vector<dealii::Point<dim>> &x) const
+{
+  x.resize(points.n_own);
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    for (unsigned int d = 0; d < dim; ++d)
+      x[i][d] = columns[Layout::position + d][i];
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    x[i] = points.position[i] + last_dt * moving[i];
+  halo.update(x);
+}
+
+template <int dim>
+void
+Fluid<dim>::refill()
+{
+  const std::size_t          n_before = n_cloud;
+  std::vector<unsigned char> taken_out(n_before, 0);
+  find_strays(taken_out);
+  find_corner_twins(taken_out);
+  std::vector<dealii::Point<dim>> x;
+  new_positions(x);
+  find_inside(x, taken_out);
+  if (options.refill.enabled)
+    {
+      find_crowded(x, taken_out);
+      insert(x);
+    }
+  taken_out.resize(columns.size(), 0);
+  std::vector<unsigned int> kept;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    if (!taken_out[i])
+      kept.push_back(i);
+  if (kept.size() < columns.size())
+    {
+      columns.reorder(kept);
+      columns.resize(kept.size());
+    }
+}
+
+// Points beyond open faces.
+template <int dim>
+void
+Fluid<dim>::find_strays(std::vector<unsigned char> &taken_out)
+{
+  std::uint64_t n       = 0;
+  const auto    corners = options.box.get_boundary_points();
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    for (unsigned int d = 0; d < dim && !taken_out[i]; ++d)
+      if (const double x = columns[Layout::position + d][i];
+          x < corners.first[d] || x > corners.second[d])
+        {
+          taken_out[i] = 1;
+          ++n;
+        }
+  counts.left += mpi::sum(n, comm);
+}
+
+// Two points that slid into the same corner are at the same place: the older one stays.
+template <int dim>
+void
+Fluid<dim>::find_corner_twins(std::vector<unsigned char> &taken_out)
+{
+  std::vector<std::array<double, 2>> here;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    if (n_faces(columns[Layout::walls][i]) == dim)
+      here.push_back({columns[Layout::walls][i], columns[Layout::id][i]});
+  std::map<double, double> first;
+  std::uint64_t            n = 0;
+  for (const auto &there : dealii::Utilities::MPI::all_gather(comm, here))
+    for (const auto &[corner, id] : there)
+      {
+        const auto [place, is_new] = first.emplace(corner, id);
+        n += !is_new;
+        place->second = std::min(place->second, id);
+      }
+  counts.taken_out += n;
+  if (n > 0)
+    for (std::size_t i = 0; i < n_cloud; ++i)
+      if (n_faces(columns[Layout::walls][i]) == dim)
+        taken_out[i] |= columns[Layout::id][i] != first.at(columns[Layout::walls][i]);
+}
+
+/**
+ * Of two points too near to each other, that on fewer faces of the box goes, then that inside the
+ * fluid, then the younger one; the fluid's outline stays as it is, so that no volume is lost. Nor
+ * may a point be so near to a wall that the flat elements between have too large spheres.
+ */
+template <int dim>
+void
+Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
+                         std::vector<unsigned char>            &taken_out)
+{
+  std::vector<double> marks(points.size());
+  const auto          rank_of = [this](const unsigned int i) {
+    return std::array<double, 3>{is_structure(i) ? dim + 1. : double(n_faces(walls[i])),
+                                 double(free_surface[i]),
+                                 -double(points.id[i])};
+  };
+  for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int) {
+    const double h     = 0.5 * (points.spacing[i] + points.spacing[j]),
+                 share = free_surface[i] && free_surface[j] ? 0.9 : 1.;
+    if (x[i].distance_square(x[j]) > std::pow(share * options.refill.nearest * h, 2))
+      return;
+    const unsigned int loser = rank_of(i) < rank_of(j) ? i : j;
+    // A corner may be all that holds the fluid's outline there.
+    if (!is_structure(loser) && n_faces(walls[loser]) < dim && (!free_surface[loser] || share < 1))
+      marks[loser] += 1;
+  });
+  find_flattened(x, marks);
+  halo.sum_to_owners(marks);
+  std::uint64_t n       = 0;
+  const auto    corners = options.box.get_boundary_points();
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    {
+      bool goes = marks[i] > 0;
+      if (!free_surface[i] && !isolated[i])
+        for (unsigned int face = 0; face < 2 * dim; ++face)
+          {
+            const double place = face % 2 == 0 ? corners.first[face / 2] : corners.second[face / 2];
+            goes |= options.walls[face] != Wall::open &&
+                    !(static_cast<unsigned int>(columns[Layout::walls][i]) >> face & 1) &&
+                    std::fabs(x[i][face / 2] - place) <
+                      options.refill.nearest_to_wall * points.spacing[i];
+          }
+      if (goes && !taken_out[i])
+        {
+          taken_out[i] = 1;
+          ++n;
+        }
+    }
+  counts.taken_out += mpi::sum(n, comm);
+}
+
+/**
+ * Each element's longest edge, where it is too long, gets a point in its middle with the mean of
+ * its ends: what is interpolated linearly, momentum above all, does not change. The longest edges
+ * first, and none that shares a point with another one of this step.
+ */
+template <int dim>
+void
+Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
+{
+  // Nothing is put into strands and sheets of one element: they tear.
+  std::vector<unsigned char> inside(mesh.n_elements(), 0);
+  for (unsigned int e = 0; e < mesh.n_elements(); ++e)
+    for (unsigned int i = mesh.first_node[e]; i < mesh.first_node[e + 1]; ++i)
+      inside[e] |= !free_surface[mesh.node[i]];
+  std::map<unsigned int, LongEdge> by_element;
+  for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int e) {
+    const double h = 0.5 * (points.spacing[i] + points.spacing[j]);
+    if (is_structure(i) && is_structure(j))
+      return;
+    const bool   on_boundary = (walls[i] & walls[j]) || (free_surface[i] && free_surface[j]);
+    const double limit =
+      on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
+    const double length_square = x[i].distance_square(x[j]);
+    if (!inside[e] || length_square < std::pow(limit * h, 2))
+      return;
+    const bool in_order = points.id[i] < points.id[j];
+    LongEdge   edge{length_square,
+                  {double(points.id[in_order ? i : j]), double(points.id[in_order ? j : i])},
+                  {i, j},
+                  mpi::rank(comm)};
+    auto      &longest = by_element[e];
+    if (longest.length_square == 0 || edge.key() < longest.key())
+      longest = edge;
+  });
+  std::vector<std::array<double, 4>>        here;
+  std::map<std::array<double, 4>, LongEdge> mine;
+  for (const auto &[element, edge] : by_element)
+    if (mine.emplace(edge.key(), edge).second)
+      here.push_back(edge.key());
+  std::set<std::array<double, 4>> all;
+  for (const auto &there : dealii::Utilities::MPI::all_gather(comm, here))
+    all.insert(there.begin(), there.end());
+  std::set<double> used;
+  for (const auto &key : all)
+    {
+      if (used.count(key[1]) || used.count(key[2]))
+        continue;
+      used.insert({key[1], key[2]});
+      const std::uint64_t id = next_id++;
+      ++counts.inserted;
+      if (key[3] == mpi::rank(comm))
+        insert_between(mine.at(key).rows, x, id);
+    }
+}
+
+template <int dim>
+void
+Fluid<dim>::insert_between(const std::array<unsigned int, 2>     &rows,
+                           const std::vector<dealii::Point<dim>> &x,
+                           const std::uint64_t                    id)
+{
+  const std::size_t row = columns.size();
+  columns.resize(row + 1);
+  const auto [i, j] = rows;
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      columns[Layout::position + d][row] = 0.5 * (x[i][d] + x[j][d]);
+      columns[Layout::velocity + d][row] = 0.5 * (corrected[i][d] + corrected[j][d]);
+    }
+  columns[Layout::pressure][row] = 0.5 * (pressure[i] + pressure[j]);
+  columns[Layout::spacing][row]  = 0.5 * (points.spacing[i] + points.spacing[j]);
+  columns[Layout::id][row]       = id;
+  columns[Layout::walls][row]    = walls[i] & walls[j];
+  columns[Layout::free][row]     = free_surface[i] && free_surface[j];
+}
+
+template class Fluid<2>;
+template class Fluid<3>;
+} // namespace coracle::meshless

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mpi.h>
+#include <coracle/meshless/fluid.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace coracle::meshless
+{
+namespace
+{
+/// Share of E M^-1 E^T that holds pressures of the surface that nothing else determines, those of a
+/// single element: they are 0 where the pressure is linear.
+constexpr double surface_share = 1e-3;
+} // namespace
+
+template <int dim>
+double
+Fluid<dim>::step_limit() const
+{
+  // |v| dt + g dt^2 / 2 = C h.
+  const double g    = options.gravity.norm();
+  double       step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    {
+      const double v = velocity[i].norm(), move = options.largest_move * points.spacing[i];
+      if (v > 0 || g > 0)
+        step = std::min(step, 2 * move / (v + std::sqrt(v * v + 2 * g * move)));
+    }
+  return mpi::min(step, comm);
+}
+
+template <int dim>
+void
+Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
+{
+  moving  = velocity;
+  last_dt = dt;
+  surface_pressure.resize(points.size());
+  move_structures(dt, false);
+  halo.update(moving);
+  for (unsigned int iteration = 0; iteration < options.n_iterations; ++iteration)
+    {
+      timed("elements", [&] { move_elements(dt, iteration); });
+      timed("predictor", [&] { predict(time, dt); });
+      timed("pressure", [&] { solve_pressure(dt, iteration); });
+      timed("correction", [&] { correct(dt); });
+    }
+  timed("move", [&] {
+    move(dt);
+    find_moved_boundary();
+  });
+  check_numbers();
+}
+
+// Elements halfway along the motion known so far. Connections stay, so that the pattern and, where
+// elements have changed little, the preconditioner of the first iteration serve them all.
+template <int dim>
+void
+Fluid<dim>::move_elements(const double dt, const unsigned int iteration)
+{
+  scratch.resize(moving.size());
+  for (std::size_t i = 0; i < moving.size(); ++i)
+    scratch[i] = 0.5 * dt * moving[i];
+  moved_rules.set_moved(rules, mesh, scratch);
+  FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(moved_volume);
+  find_surface_areas();
+  if (iteration == 0)
+    {
+      pressure_system.reinit(mesh, halo);
+      if (options.viscosity > 0)
+        viscous_system.reinit(mesh, halo);
+    }
+}
+
+template <int dim>
+void
+Fluid<dim>::predict(const double time, const double dt)
+{
+  predicted = velocity;
+  if (options.viscosity > 0)
+    diffuse(dt);
+  if (body_force)
+    body_force->set_time(time + 0.5 * dt);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    {
+      predicted[i] += dt * options.gravity;
+      if (body_force)
+        for (unsigned int d = 0; d < dim; ++d)
+          predicted[i][d] += dt * body_force->value(points.position[i] + scratch[i], d);
+    }
+  halo.update(predicted);
+}
+
+// The change of velocity by viscosity, which is none where walls hold it.
+template <int dim>
+void
+Fluid<dim>::diffuse(const double dt)
+{
+  const double               nu = options.viscosity / options.density;
+  std::vector<Vector>        force;
+  std::vector<double>        change(points.n_own), driving(points.n_own);
+  std::vector<unsigned char> fixed(points.size());
+  FluidOperators<dim>(mesh, moved_rules, halo).laplacian(velocity, force);
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      for (std::size_t i = 0; i < points.size(); ++i)
+        {
+          fixed[i] = isolated[i] || is_structure(i);
+          for (unsigned int face = 0; face < 2 * dim; ++face)
+            if (walls[i] >> face & 1)
+              fixed[i] |= options.walls[face] == Wall::stick || face / 2 == d;
+        }
+      viscous_system.assemble(
+        mesh, moved_rules, moved_volume, options.time_weight * dt * nu, fixed);
+      viscous_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::diagonal);
+      for (std::size_t i = 0; i < points.n_own; ++i)
+        {
+          driving[i] = -dt * nu * force[i][d];
+          change[i]  = 0;
+        }
+      viscous_system.solve(driving, change, options.solver);
+      for (std::size_t i = 0; i < points.n_own; ++i)
+        predicted[i][d] += change[i];
+    }
+}
+
+// On the halfway elements.
+template <int dim>
+typename Fluid<dim>::Vector
+Fluid<dim>::facet_area(const typename Tessellation<dim>::Facet &facet) const
+{
+  std::array<Vector, dim> x;
+  for (unsigned int i = 0; i < dim; ++i)
+    x[i] = points.position[facet[i]] + scratch[facet[i]];
+  if constexpr (dim == 2)
+    return cross_product_2d(x[1] - x[0]);
+  else
+    return 0.5 * cross_product_3d(x[1] - x[0], x[2] - x[0]);
+}
+
+// a_i, a share of each facet beside it: the derivative of the volume by the point's place.
+template <int dim>
+void
+Fluid<dim>::find_surface_areas()
+{
+  surface_area.assign(points.size(), Vector());
+  for (const auto &facet : surface_facets)
+    {
+      const Vector area = facet_area(facet);
+      for (const unsigned int node : facet)
+        surface_area[node] += area / dim;
+    }
+  halo.sum_to_owners(surface_area);
+  find_wall_areas();
+  halo.update(surface_area);
+}
+
+/**
+ * At the free surface, the pressure is such that the elements there keep their volume too, and
+ * acts on the surface: with E u = (a_i . u_i), B becomes B - E in both equations, and
+ * S - E M^-1 B^T - B M^-1 E^T + E M^-1 E^T takes the place of S. The last term is in the matrix.
+ */
+template <int dim>
+void
+Fluid<dim>::add_surface_terms(double *result, const double *p)
+{
+  surface_pressure.assign(p, p + points.n_own);
+  halo.update(surface_pressure);
+  gradient.assign(points.size(), Vector());
+  moved_rules.for_each_of(surface_elements,
+                          mesh,
+                          [&](const unsigned int *nodes,
+                              const unsigned int  n,
+                              const double        weight,
+                              const double       *value,
+                              const Vector       *grad) {
+                            Vector slope;
+                            for (unsigned int i = 0; i < n; ++i)
+                              slope += surface_pressure[nodes[i]] * grad[i];
+                            for (unsigned int i = 0; i < n; ++i)
+                              gradient[nodes[i]] += (weight * value[i]) * slope;
+                          });
+  halo.sum_to_owners(gradient);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    {
+      pushed[i] = Vector();
+      if (no_pressure[i] || !free_surface[i])
+        continue;
+      result[i] -= surface_area[i] * gradient[i] / moved_volume[i];
+      pushed[i] = surface_pressure[i] / moved_volume[i] * surface_area[i];
+    }
+  halo.update(pushed);
+  driven.assign(points.size(), 0.);
+  moved_rules.for_each_of(surface_elements,
+                          mesh,
+                          [&](const unsigned int *nodes,
+                              const unsigned int  n,
+                              const double        weight,
+                              const double       *value,
+                              const Vector       *grad) {
+                            Vector flow;
+                            for (unsigned int i = 0; i < n; ++i)
+                              flow += value[i] * pushed[nodes[i]];
+                            for (unsigned int i = 0; i < n; ++i)
+                              driven[nodes[i]] += weight * (grad[i] * flow);
+                          });
+  halo.sum_to_owners(driven);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    if (!no_pressure[i])
+      result[i] -= driven[i];
+}
+
+template <int dim>
+void
+Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
+{
+  const double theta = options.time_weight, factor = options.density / (theta * dt);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    scratch[i] = factor * (theta * predicted[i] + (1 - theta) * velocity[i]);
+  FluidOperators<dim>(mesh, moved_rules, halo).divergence(scratch, right_side);
+  // The rate at which volume is to change [1/s], little in a step.
+  const double swelling =
+    options.volume_relaxation > 0
+      ? std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
+                   -1e-3,
+                   1e-3) /
+          dt
+      : 0.;
+  std::vector<double> surface(points.n_own);
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    if (!no_pressure[i])
+      {
+        right_side[i] += factor * swelling * moved_volume[i] - surface_area[i] * scratch[i];
+        surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_volume[i];
+      }
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    if (const auto &node = structures.nodes[i - n_cloud]; !no_pressure[i])
+      {
+        const Vector &area = wall_area[i - n_cloud];
+        right_side[i] -= factor * (area * node.velocity);
+        if (node.rigid < 0)
+          for (unsigned int d = 0; d < dim; ++d)
+            surface[i] += options.density / theta * area[d] * area[d] * node.inverse_mass[d];
+      }
+  pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure);
+  if (iteration == 0)
+    pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
+  surface_pressure.resize(points.size());
+  pushed.resize(points.size());
+  last_pressure_solve = pressure_system.solve(right_side,
+                                              pressure,
+                                              options.solver,
+                                              [this](double *result, const double *p) {
+                                                add_surface_terms(result, p);
+                                                add_rigid_bodies(result, p);
+                                              });
+  ++pressure_solves;
+  pressure_iterations += last_pressure_solve.iterations;
+  unconverged_solves += !last_pressure_solve.converged;
+  halo.update(pressure);
+}
+
+// Drops may leave all faces, points of the free surface those that gravity pulls them from.
+template <int dim>
+unsigned int
+Fluid<dim>::held_walls(const std::size_t row) const
+{
+  if (isolated[row])
+    return 0;
+  unsigned int held = walls[row];
+  if (free_surface[row])
+    for (unsigned int face = 0; face < 2 * dim; ++face)
+      if ((face % 2 == 0 ? 1. : -1.) * options.gravity[face / 2] > 0)
+        held &= ~(1u << face);
+  return held;
+}
+
+template <int dim>
+void
+Fluid<dim>::set_wall_velocity(const std::size_t row, Vector &v) const
+{
+  const unsigned int held = held_walls(row);
+  for (unsigned int face = 0; face < 2 * dim; ++face)
+    if (held >> face & 1)
+      {
+        if (options.walls[face] == Wall::stick)
+          v = 0;
+        else
+          v[face / 2] = 0;
+      }
+}
+
+template <int dim>
+void
+Fluid<dim>::correct(const double dt)
+{
+  FluidOperators<dim>(mesh, moved_rules, halo).gradient(pressure, gradient);
+  corrected = predicted;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    {
+      if (!isolated[i])
+        {
+          gradient[i] -= pressure[i] * surface_area[i];
+          corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
+          set_wall_velocity(i, corrected[i]);
+        }
+      moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
+    }
+  move_structures(dt, true);
+  halo.update(moving);
+  halo.update(corrected);
+}
+
+// A point that reaches a face of the box is on it from now on; a drop may leave again.
+template <int dim>
+void
+Fluid<dim>::move(const double dt)
+{
+  book_step(dt);
+  const auto corners = options.box.get_boundary_points();
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    {
+      dealii::Point<dim> x      = points.position[i] + dt * moving[i];
+      unsigned int       on     = held_walls(i);
+      const double       before = corrected[i].norm_square();
+      for (unsigned int face = 0; face < 2 * dim; ++face)
+        {
+          const unsigned int d      = face / 2;
+          const double       place  = face % 2 == 0 ? corners.first[d] : corners.second[d];
+          const bool         beyond = face % 2 == 0 ? x[d] <= place : x[d] >= place;
+          if (options.walls[face] == Wall::open || !(beyond || (on >> face & 1)))
+            continue;
+          x[d] = place;
+          on |= 1u << face;
+          if (options.walls[face] == Wall::stick)
+            corrected[i] = 0;
+          else
+            corrected[i][d] = 0;
+        }
+      const double stopped =
+        0.5 * options.density * moved_volume[i] * (before - corrected[i].norm_square());
+      energy.boundary += stopped;
+      energy.kinetic -= stopped;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          columns[Layout::position + d][i] = x[d];
+          columns[Layout::velocity + d][i] = corrected[i][d];
+        }
+      columns[Layout::pressure][i] = pressure[i];
+      columns[Layout::walls][i]    = on;
+    }
+}
+
+template <int dim>
+void
+Fluid<dim>::find_moved_boundary()
+{
+  PointCloud<dim> moved = points;
+  new_positions(moved.position);
+  moved_boundary = boundary_of(moved, mesh);
+}
+
+// With the masses of the halfway elements. What walls take is what they change of the corrected
+// velocity; viscosity's share is measured before the other forces come.
+template <int dim>
+void
+Fluid<dim>::book_step(const double dt)
+{
+  double kinetic = 0;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    {
+      const double mass  = options.density * moved_volume[i];
+      const Vector mean  = 0.5 * (velocity[i] + corrected[i]);
+      Vector       force = options.gravity;
+      if (body_force)
+        for (unsigned int d = 0; d < dim; ++d)
+          force[d] += body_force->value(points.position[i] + 0.5 * dt * moving[i], d);
+      const Vector push    = -(isolated[i] ? 0. : dt) * gradient[i];
+      const Vector pressed = isolated[i] ? predicted[i] : predicted[i] - dt / mass * gradient[i];
+      const double work    = dt * mass * (force * moving[i]);
+      energy.external_work += work;
+      energy.internal -= push * mean;
+      energy.boundary += mass * (pressed - corrected[i]) * mean;
+      energy.damping -= mass * (predicted[i] - velocity[i] - dt * force) * mean;
+      energy.transfer += work - dt * mass * (force * mean);
+      kinetic += 0.5 * mass * (corrected[i].norm_square() - velocity[i].norm_square());
+    }
+  energy.kinetic += kinetic;
+}
+
+template <int dim>
+void
+Fluid<dim>::check_numbers()
+{
+  if (failure)
+    return;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    if (!std::isfinite(corrected[i].norm_square()) || !std::isfinite(pressure[i]))
+      {
+        std::ostringstream details;
+        details << "point " << points.id[i] << " of '" << body_name << "' at ("
+                << points.position[i] << ") m: velocity (" << corrected[i] << ") m/s, pressure "
+                << pressure[i] << " Pa";
+        failure.emplace("the motion of the meshless fluid is not a number",
+                        details.str(),
+                        "lower Largest move of the body, and look at what happens there before");
+        return;
+      }
+}
+
+template class Fluid<2>;
+template class Fluid<3>;
+} // namespace coracle::meshless

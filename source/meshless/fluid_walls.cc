@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the fluid has to do with structures.
+#include <coracle/base/mpi.h>
+#include <coracle/meshless/fluid.h>
+
+namespace coracle::meshless
+{
+namespace
+{
+/// Ids of structure nodes: above those of fluid points, and exact as doubles.
+constexpr std::uint64_t first_structure_id = std::uint64_t(1) << 52;
+} // namespace
+
+template <int dim>
+void
+Fluid<dim>::clear_structures()
+{
+  if (structures.empty())
+    return;
+  std::vector<dealii::Point<dim>> mine;
+  for (const auto &node : structures.nodes)
+    mine.push_back(node.position);
+  std::vector<dealii::Point<dim>> nodes;
+  for (const auto &some : dealii::Utilities::MPI::all_gather(comm, mine))
+    nodes.insert(nodes.end(), some.begin(), some.end());
+  std::vector<unsigned int> kept;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    {
+      dealii::Point<dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = columns[Layout::position + d][i];
+      bool goes = structures.contains(x);
+      for (std::size_t k = 0; k < nodes.size() && !goes; ++k)
+        goes = x.distance_square(nodes[k]) < std::pow(0.5 * options.spacing, 2);
+      if (!goes)
+        kept.push_back(i);
+    }
+  columns.reorder(kept);
+  columns.resize(kept.size());
+  counts.created = mpi::sum<std::uint64_t>(kept.size(), comm);
+}
+
+// Faces of the box where a node of a structure stands: between it and the fluid's points there the
+// boundary is wall.
+template <int dim>
+unsigned char
+Fluid<dim>::faces_at(const dealii::Point<dim> &x) const
+{
+  const auto    corners = options.box.get_boundary_points();
+  unsigned char faces   = 0;
+  for (unsigned int face = 0; face < 2 * dim; ++face)
+    {
+      const double place = face % 2 == 0 ? corners.first[face / 2] : corners.second[face / 2];
+      if (options.walls[face] != Wall::open &&
+          std::fabs(x[face / 2] - place) < 1e-3 * options.spacing)
+        faces |= 1u << face;
+    }
+  return faces;
+}
+
+// Rows behind the fluid's own.
+template <int dim>
+void
+Fluid<dim>::add_structure_points()
+{
+  for (const auto &node : structures.nodes)
+    {
+      points.position.push_back(node.position);
+      points.spacing.push_back(options.spacing);
+      points.id.push_back(first_structure_id + node.key);
+      points.kind.push_back(PointKind::wall);
+      velocity.push_back(node.velocity);
+      pressure.push_back(0.);
+      walls.push_back(faces_at(node.position));
+    }
+  points.n_own = n_cloud + structures.nodes.size();
+}
+
+// All facets of the boundary beside a node of a structure: it moves with the body whatever they
+// are. What was added to the free surface's areas is taken from there.
+template <int dim>
+void
+Fluid<dim>::find_wall_areas()
+{
+  std::vector<Vector> area(points.size());
+  for (const auto &facet : wall_facets)
+    {
+      const Vector whole = facet_area(facet);
+      for (const unsigned int node : facet)
+        area[node] += whole / dim;
+    }
+  halo.sum_to_owners(area);
+  wall_area.resize(structures.nodes.size());
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    {
+      wall_area[i - n_cloud] = area[i] + surface_area[i];
+      surface_area[i]        = Vector();
+    }
+}
+
+/**
+ * Velocities of structure nodes at the end of the step: those without the fluid, and what its
+ * pressure adds, p a for each node, in this step so far.
+ */
+template <int dim>
+void
+Fluid<dim>::move_structures(const double dt, const bool with_pressure)
+{
+  node_impulses.assign(structures.nodes.size(), Vector());
+  rigid_impulses.assign(structures.rigids.size(), {});
+  if (with_pressure && !structures.rigids.empty())
+    {
+      rigid_impulses = structures.sum_of_pressures(pressure.data() + n_cloud, wall_area, comm);
+      for (auto &push : rigid_impulses)
+        {
+          push.impulse *= dt;
+          push.moment *= dt;
+        }
+    }
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    {
+      const auto &node = structures.nodes[i - n_cloud];
+      Vector      v    = node.velocity + structures.velocity_of(i - n_cloud, rigid_impulses);
+      if (with_pressure && node.rigid < 0)
+        {
+          node_impulses[i - n_cloud] = dt * pressure[i] * wall_area[i - n_cloud];
+          for (unsigned int d = 0; d < dim; ++d)
+            v[d] += node.inverse_mass[d] * node_impulses[i - n_cloud][d];
+        }
+      moving[i] = v;
+      if (with_pressure)
+        corrected[i] = v;
+    }
+}
+
+// rho / theta Q M^-1 Q^T, with Q^T p the pressure's force and moment on the bodies.
+template <int dim>
+void
+Fluid<dim>::add_rigid_bodies(double *result, const double *p) const
+{
+  if (structures.rigids.empty())
+    return;
+  const auto push = structures.sum_of_pressures(p + n_cloud, wall_area, comm);
+  for (std::size_t i = n_cloud; i < points.n_own; ++i)
+    if (!no_pressure[i])
+      result[i] += options.density / options.time_weight *
+                   (wall_area[i - n_cloud] * structures.velocity_of(i - n_cloud, push));
+}
+
+// Drops that flew into a body.
+template <int dim>
+void
+Fluid<dim>::find_inside(const std::vector<dealii::Point<dim>> &x,
+                        std::vector<unsigned char>            &taken_out)
+{
+  if (structures.empty())
+    return;
+  std::uint64_t n = 0;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    if (!taken_out[i] && structures.contains(x[i]))
+      {
+        taken_out[i] = 1;
+        ++n;
+      }
+  counts.taken_out += mpi::sum(n, comm);
+}
+
+// A point inside the fluid that is nearly in the facet of a structure: their element's sphere would
+// soon be too large.
+template <int dim>
+void
+Fluid<dim>::find_flattened(const std::vector<dealii::Point<dim>> &x,
+                           std::vector<double>                   &marks) const
+{
+  if (structures.empty())
+    return;
+  for (unsigned int e = 0; e < mesh.n_elements(); ++e)
+    {
+      if (!mesh.is_simplex(e))
+        continue;
+      std::array<dealii::Point<dim>, dim> facet;
+      unsigned int                        n = 0, tip = 0;
+      for (unsigned int k = mesh.first_node[e]; k < mesh.first_node[e + 1]; ++k)
+        if (const unsigned int node = mesh.node[k]; is_structure(node) && n < dim)
+          facet[n++] = x[node];
+        else
+          tip = node;
+      if (n < dim || free_surface[tip] || is_structure(tip))
+        continue;
+      Vector normal;
+      if constexpr (dim == 2)
+        normal = cross_product_2d(facet[1] - facet[0]);
+      else
+        normal = cross_product_3d(facet[1] - facet[0], facet[2] - facet[0]);
+      if (std::fabs((x[tip] - facet[0]) * normal) <
+          options.refill.nearest_to_wall * points.spacing[tip] * normal.norm())
+        marks[tip] += 1;
+    }
+}
+
+template class Fluid<2>;
+template class Fluid<3>;
+} // namespace coracle::meshless

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A cube in meshless water floats at Archimedes' draught, also where it has a tenth of the water's density;
+one that falls in dives, comes up, and neither makes nor takes water or energy."""
+from run_case import Test
+
+test = Test()
+CASE, COARSE = "falling_cube/falling_cube.prm", {"Bodies/water/Spacing": "40 mm", "Bodies/cube/Mesh/Subdivisions": 5}
+for density, draught in ((500, 0.1), (100, 0.02)):
+    start = {**COARSE, "Bodies/cube/Density": density, "Bodies/cube/Free directions": "y", "End time": "1",
+             "Bodies/cube/Mesh/Lower corner": f"0.5, {0.6 - draught}",
+             "Bodies/cube/Mesh/Upper corner": f"0.7, {0.8 - draught}"}
+    result = test.run(CASE, start)
+    test.check(f"{density}: the verdict is OK", "verdict: OK" in result.text)
+    heights = result["cube.centre.y [m]"]
+    test.band(f"{density}: rise over the draught's height, in spacings", (max(heights) - 0.7 + draught) / 0.04, -0.3, 0.3)
+    test.band(f"{density}: fall below it, in spacings", (min(heights) - 0.7 + draught) / 0.04, -0.3, 0.3)
+    test.band(f"{density}: drift of the water's volume", max(map(abs, result["water.volume_drift"])), 0, 0.01)
+
+fall = {**COARSE, "End time": "0.7"}
+one, two = test.run(CASE, fall), test.run(CASE, fall, ranks=2)
+test.check("fall: the verdict is OK", "verdict: OK" in one.text)
+test.band("fall: the cube dives below its draught", min(one["cube.centre.y [m]"]), 0.45, 0.58)
+test.band("fall: it comes up again", one["cube.velocity.y [m/s]"][-1], 0.1, 1)
+test.band("fall: drift of the water's volume", max(map(abs, one["water.volume_drift"])), 0, 0.03)
+test.agree("fall: height on 1 and 2 ranks", one["cube.centre.y [m]"][-1], two["cube.centre.y [m]"][-1], 1e-7)
+test.finish()

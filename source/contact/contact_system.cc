@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exact_sum.h>
 #include <coracle/contact/contact_system.h>
 #include <coracle/contact/messages.h>
 
@@ -189,6 +190,8 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
     for (const unsigned int p : search.candidates(s).point)
       motion.point_speed = std::max(motion.point_speed, points[s].point_velocity(p).norm_square());
   motion.point_speed = std::sqrt(motion.point_speed);
+  if (options.reproducible)
+    MPI_Allreduce(MPI_IN_PLACE, &motion.point_speed, 1, MPI_DOUBLE, MPI_MAX, communicator);
 
   list.clear();
   keys.clear();
@@ -214,6 +217,8 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
                       surface().facets[contact.facet].key});
       statistics.worst_gap = std::min(statistics.worst_gap, contact.gap - contact.distance);
     }
+  if (options.reproducible)
+    solver.set_blocks(BlockRows<dim>::find_blocks(list, points));
   MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_gap, 1, MPI_DOUBLE, MPI_MIN, communicator);
   if (statistics.worst_gap == std::numeric_limits<double>::max())
     statistics.worst_gap = 0;
@@ -246,7 +251,71 @@ ContactSystem<dim>::solve(const std::vector<RigidUnknown<dim>> &rigid, const dou
   statistics.work += solver.report().work;
   statistics.energy_fed += std::max(0., solver.report().work);
   used += movement_margin * solver.report().largest_correction;
-  sum_up(rigid);
+  if (options.reproducible && statistics.n_contacts > 0)
+    sum_up_blocks(rigid);
+  else
+    sum_up(rigid);
+}
+
+// Copies of all blocks in their order, rigid bodies in exact sums.
+template <int dim>
+void
+ContactSystem<dim>::sum_up_blocks(const std::vector<RigidUnknown<dim>> &rigid)
+{
+  auto                 &blocks = solver.blocks();
+  const auto           &row    = blocks.rows();
+  const auto           &result = solver.impulses();
+  std::vector<Vector>   impulses(blocks.unknowns().size()), corrections(impulses.size());
+  constexpr int         n_values = 2 * (dim + 3);
+  std::vector<ExactSum> sums(n_values * rigid.size());
+  for (std::size_t c = 0; c < list.size(); ++c)
+    for (unsigned int side = 0; side < 2; ++side)
+      {
+        const double sign = (side == 0 ? 1 : -1);
+        for (std::size_t e = row.begin[2 * c + side]; e < row.begin[2 * c + side + 1]; ++e)
+          {
+            const double weight = sign * row.entries[e].weight;
+            impulses[row.entries[e].unknown] += weight * result.impulse[c];
+            corrections[row.entries[e].unknown] += weight * result.correction[c];
+          }
+        if (row.rigid_body[c][side] < 0)
+          continue;
+        const unsigned int b   = blocks.body(row.rigid_body[c][side]);
+        ExactSum          *sum = &sums[n_values * b];
+        const Vector       arm = list[c].place + list[c].gap * list[c].normal - rigid[b].centre;
+        for (const Vector &value : {sign * result.impulse[c], sign * result.correction[c]})
+          {
+            const auto moment = Delassus<dim>::torque(arm, value);
+            for (int d = 0; d < dim; ++d)
+              (sum++)->add(value[d]);
+            for (int d = 0; d < 3; ++d)
+              (sum++)->add(moment[d]);
+          }
+      }
+  blocks.copies.sum_to_first(impulses);
+  blocks.copies.sum_to_first(corrections);
+  unknown_impulse.assign(rows.unknowns().size(), {});
+  unknown_correction.assign(rows.unknowns().size(), {});
+  for (unsigned int copy = 0; copy < impulses.size(); ++copy)
+    {
+      unknown_impulse[blocks.unknown(copy)] += impulses[copy];
+      unknown_correction[blocks.unknown(copy)] += corrections[copy];
+    }
+  if (!rigid.empty())
+    ExactSum::sum(sums, communicator);
+  rigid_sums.assign(rigid.size(), {});
+  const ExactSum *sum = sums.data();
+  for (auto &body : rigid_sums)
+    {
+      for (int d = 0; d < dim; ++d)
+        body.impulse[d] = (sum++)->value();
+      for (int d = 0; d < 3; ++d)
+        body.moment[d] = (sum++)->value();
+      for (int d = 0; d < dim; ++d)
+        body.correction[d] = (sum++)->value();
+      for (int d = 0; d < 3; ++d)
+        body.correction_moment[d] = (sum++)->value();
+    }
 }
 
 template <int dim>

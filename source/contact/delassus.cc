@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exact_sum.h>
 #include <coracle/contact/delassus.h>
 #include <coracle/contact/messages.h>
 
@@ -61,9 +62,8 @@ Delassus<dim>::response(const Row &row, const Vector &impulse, const bool split)
   Vector result;
   for (std::size_t e = row.begin; e < row.begin + row.n_entries; ++e)
     {
-      const unsigned int i = entry_unknown[e];
-      const double       factor =
-        entry_weight[e] * entry_weight[e] / (split ? 1 : shared.multiplicity(i));
+      const unsigned int i      = entry_unknown[e];
+      const double       factor = entry_weight[e] * entry_weight[e] / (split ? 1 : multiplicity(i));
       for (int d = 0; d < dim; ++d)
         result[d] += factor * inverse_mass[i][d] * impulse[d];
     }
@@ -154,15 +154,37 @@ Delassus<dim>::take_entries(const Rows &rows)
 
 template <int dim>
 void
-Delassus<dim>::share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid)
+Delassus<dim>::count_ranks_of_bodies(const Rows &rows, const unsigned int n_bodies)
 {
-  buffer.assign(rigid.size(), 0.);
+  rigid_multiplicity.assign(n_bodies, 0.);
   for (const auto &sides : rows.rigid_body)
     for (const int b : sides)
       if (b >= 0)
-        buffer[b] = 1;
-  if (!rigid.empty())
+        rigid_multiplicity[b] = 1;
+  if (n_bodies > 0)
+    MPI_Allreduce(
+      MPI_IN_PLACE, rigid_multiplicity.data(), n_bodies, MPI_DOUBLE, MPI_SUM, communicator);
+}
+
+template <int dim>
+void
+Delassus<dim>::count_blocks_of_bodies()
+{
+  const unsigned int n_copies = blocks->rigid().size();
+  buffer.assign(blocks->n_bodies(), 0.);
+  for (unsigned int copy = 0; copy < n_copies; ++copy)
+    ++buffer[blocks->body(copy)];
+  if (!buffer.empty())
     MPI_Allreduce(MPI_IN_PLACE, buffer.data(), buffer.size(), MPI_DOUBLE, MPI_SUM, communicator);
+  rigid_multiplicity.resize(n_copies);
+  for (unsigned int copy = 0; copy < n_copies; ++copy)
+    rigid_multiplicity[copy] = buffer[blocks->body(copy)];
+}
+
+template <int dim>
+void
+Delassus<dim>::share_rigid_bodies(const std::vector<RigidUnknown<dim>> &rigid)
+{
   rigid_inverse_mass.resize(rigid.size());
   rigid_inverse_inertia.resize(rigid.size());
   predicted.rigid.resize(rigid.size());
@@ -170,7 +192,7 @@ Delassus<dim>::share_rigid_bodies(const Rows &rows, const std::vector<RigidUnkno
   for (unsigned int b = 0; b < rigid.size(); ++b)
     {
       // Ranks without contact at a body take no part in its change.
-      const double n           = std::max(1., buffer[b]);
+      const double n           = std::max(1., rigid_multiplicity[b]);
       rigid_inverse_mass[b]    = n * rigid[b].inverse_mass;
       rigid_inverse_inertia[b] = n * rigid[b].inverse_inertia;
       if (dim == 2)
@@ -181,7 +203,6 @@ Delassus<dim>::share_rigid_bodies(const Rows &rows, const std::vector<RigidUnkno
       predicted.rigid[b] = rigid[b].velocity;
       predicted.spin[b]  = rigid[b].spin;
     }
-  rigid_multiplicity = buffer;
 }
 
 template <int dim>
@@ -191,13 +212,34 @@ Delassus<dim>::reinit(const std::vector<Contact<dim>>      &contacts,
                       const std::vector<Unknown<dim>>      &unknowns,
                       const std::vector<RigidUnknown<dim>> &rigid)
 {
+  blocks = nullptr;
   shared.reinit(unknowns);
-  share_rigid_bodies(rows, rigid);
+  count_ranks_of_bodies(rows, rigid.size());
+  set_rows(contacts, rows, unknowns, rigid);
+}
+
+template <int dim>
+void
+Delassus<dim>::reinit(const std::vector<Contact<dim>> &contacts, BlockRows<dim> &in_blocks)
+{
+  blocks = &in_blocks;
+  count_blocks_of_bodies();
+  set_rows(contacts, blocks->rows(), blocks->unknowns(), blocks->rigid());
+}
+
+template <int dim>
+void
+Delassus<dim>::set_rows(const std::vector<Contact<dim>>      &contacts,
+                        const Rows                           &rows,
+                        const std::vector<Unknown<dim>>      &unknowns,
+                        const std::vector<RigidUnknown<dim>> &rigid)
+{
+  share_rigid_bodies(rigid);
   inverse_mass.resize(unknowns.size());
   predicted.nodes.resize(unknowns.size());
   for (unsigned int i = 0; i < unknowns.size(); ++i)
     {
-      inverse_mass[i]    = double(shared.multiplicity(i)) * to_lanes<dim>(unknowns[i].inverse_mass);
+      inverse_mass[i]    = double(multiplicity(i)) * to_lanes<dim>(unknowns[i].inverse_mass);
       predicted.nodes[i] = to_lanes<dim>(unknowns[i].velocity);
     }
 
@@ -237,6 +279,8 @@ Delassus<dim>::synchronise(LaneVelocities<dim>       &v,
                            const LaneVelocities<dim> &before,
                            double                    &scalar)
 {
+  if (blocks != nullptr)
+    return synchronise_blocks(v, before);
   if (n_ranks(communicator) == 1)
     return;
   shared.average_change(v.nodes, before.nodes);
@@ -260,6 +304,34 @@ Delassus<dim>::synchronise(LaneVelocities<dim>       &v,
         v.rigid[b][d] = before.rigid[b][d] + *in++;
       for (int d = 0; d < 3; ++d)
         v.spin[b][d] = before.spin[b][d] + *in++;
+    }
+}
+
+template <int dim>
+void
+Delassus<dim>::synchronise_blocks(LaneVelocities<dim> &v, const LaneVelocities<dim> &before)
+{
+  blocks->copies.average_change(v.nodes, before.nodes);
+  if (blocks->n_bodies() == 0)
+    return;
+  constexpr unsigned int n_values = dim + 3;
+  std::vector<ExactSum>  sums(n_values * blocks->n_bodies());
+  for (unsigned int copy = 0; copy < v.rigid.size(); ++copy)
+    {
+      ExactSum *const sum = &sums[n_values * blocks->body(copy)];
+      for (int d = 0; d < dim; ++d)
+        sum[d].add(v.rigid[copy][d] - before.rigid[copy][d]);
+      for (int d = 0; d < 3; ++d)
+        sum[dim + d].add(v.spin[copy][d] - before.spin[copy][d]);
+    }
+  ExactSum::sum(sums, communicator);
+  for (unsigned int copy = 0; copy < v.rigid.size(); ++copy)
+    {
+      const ExactSum *const sum = &sums[n_values * blocks->body(copy)];
+      for (int d = 0; d < dim; ++d)
+        v.rigid[copy][d] = before.rigid[copy][d] + sum[d].value() / rigid_multiplicity[copy];
+      for (int d = 0; d < 3; ++d)
+        v.spin[copy][d] = before.spin[copy][d] + sum[dim + d].value() / rigid_multiplicity[copy];
     }
 }
 

@@ -121,6 +121,10 @@ FacetExchange<dim>::merge(const std::vector<std::vector<SurfaceNode<dim>>> &node
           }
         received.push_back(std::move(partner));
       }
+  // What is found must not depend on how facets come together.
+  std::sort(local.facets.begin(), local.facets.end(), [](const Facet<dim> &a, const Facet<dim> &b) {
+    return a.key < b.key;
+  });
   for (auto &partner : received)
     for (const unsigned int i : partner.index)
       partner.returns.push_back(home[i] == partner.rank);

@@ -8,8 +8,8 @@
 namespace coracle::contact
 {
 template <int dim>
-GaussSeidel<dim>::GaussSeidel(MPI_Comm communicator, const bool accelerate)
-  : communicator(communicator), accelerate(accelerate)
+GaussSeidel<dim>::GaussSeidel(MPI_Comm communicator, const bool accelerate, const bool in_blocks)
+  : communicator(communicator), accelerate(accelerate), in_blocks(in_blocks)
 {}
 
 template <int dim>
@@ -113,11 +113,14 @@ GaussSeidel<dim>::iterate(Delassus<dim>             &delassus,
   momentum.restart(impulses, v);
   for (;;)
     {
-      if (n_ranks(communicator) > 1)
+      if (in_blocks || n_ranks(communicator) > 1)
         before = v;
       double largest = sweep(delassus, target, friction, false, v);
       largest        = std::max(largest, sweep(delassus, target, friction, true, v));
-      double turn    = (accelerate ? momentum.turn(delassus, impulses) : 0.);
+      double turn    = 0;
+      if (accelerate)
+        turn = (in_blocks ? momentum.turn_of_all(delassus, impulses, communicator)
+                          : momentum.turn(delassus, impulses));
       delassus.synchronise(v, before, turn);
       MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, communicator);
       ++report.iterations;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exact_sum.h>
 #include <coracle/contact/momentum.h>
 
 #include <cmath>
@@ -56,6 +57,20 @@ Momentum<dim>::turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>>
   for (std::size_t c = 0; c < rows.size(); ++c)
     result += rows[c].normal_inverse_mass * dot<dim>(start[c] - impulses[c], impulses[c] - last[c]);
   return result;
+}
+
+template <int dim>
+double
+Momentum<dim>::turn_of_all(const Delassus<dim>           &delassus,
+                           const std::vector<Lanes<dim>> &impulses,
+                           MPI_Comm                       communicator) const
+{
+  std::vector<double> terms;
+  const auto         &rows = delassus.rows();
+  for (std::size_t c = 0; c < rows.size(); ++c)
+    terms.push_back(rows[c].normal_inverse_mass *
+                    dot<dim>(start[c] - impulses[c], impulses[c] - last[c]));
+  return exact_sum(terms, communicator);
 }
 
 template <int dim>

@@ -145,7 +145,8 @@ ContactOptions::declare(Declaration &section)
                  "leaves cracks at convex edges");
 }
 
-ContactOptions::ContactOptions(const Parameters &section)
+ContactOptions::ContactOptions(const Parameters &section, const bool reproducible)
+  : reproducible(reproducible)
 {
   friction       = section.quantity("Friction");
   method         = (section.choice("Method") == "grid" ? Method::grid : Method::surface);

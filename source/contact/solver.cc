@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/exact_sum.h>
 #include <coracle/contact/blended.h>
 #include <coracle/contact/solver.h>
 #include <coracle/contact/stick_slip.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace coracle::contact
 {
@@ -11,8 +13,9 @@ template <int dim>
 Solver<dim>::Solver(const ContactOptions &options, MPI_Comm communicator)
   : options(options)
   , communicator(communicator)
+  , in_blocks(communicator)
   , delassus(communicator)
-  , gauss_seidel(communicator, options.accelerate)
+  , gauss_seidel(communicator, options.accelerate, options.reproducible)
 {}
 
 template <int dim>
@@ -37,7 +40,13 @@ Solver<dim>::solve(const std::vector<Contact<dim>>                 &contacts,
       return;
     }
 
-  delassus.reinit(contacts, rows, unknowns, rigid);
+  if (options.reproducible)
+    {
+      in_blocks.reinit(block, rows, unknowns, rigid);
+      delassus.reinit(contacts, in_blocks);
+    }
+  else
+    delassus.reinit(contacts, rows, unknowns, rigid);
   velocity = delassus.predicted;
   measure(contacts);
   if (options.law != Law::split)
@@ -46,8 +55,12 @@ Solver<dim>::solve(const std::vector<Contact<dim>>                 &contacts,
     {
       // Impulses grow with the step.
       if (old_dt > 0)
-        for (std::size_t c = 0; c < contacts.size(); ++c)
-          result.impulse[c] = dt / old_dt * warm_start.find(keys[c]);
+        {
+          result.impulse = (options.reproducible ? warm_start.find_on_all_ranks(keys, communicator)
+                                                 : warm_start.find(keys));
+          for (auto &impulse : result.impulse)
+            impulse *= dt / old_dt;
+        }
       solve_split(contacts, dt);
       if (options.position_correction)
         solve_positions(contacts, dt);
@@ -71,6 +84,7 @@ template <int dim>
 void
 Solver<dim>::measure_result(const std::vector<Contact<dim>> &contacts)
 {
+  work.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c)
     {
       const auto &row = delassus.rows()[c];
@@ -78,15 +92,21 @@ Solver<dim>::measure_result(const std::vector<Contact<dim>> &contacts)
         continue;
       const auto u = to_tensor<dim>(delassus.relative_velocity(row, velocity));
       if (result.impulse[c].norm_square() > 0)
-        statistics.work +=
-          0.5 * (result.impulse[c] *
-                 (u + to_tensor<dim>(delassus.relative_velocity(row, delassus.predicted))));
+        work.push_back(0.5 *
+                       (result.impulse[c] *
+                        (u + to_tensor<dim>(delassus.relative_velocity(row, delassus.predicted)))));
       if (options.law == Law::split || active[c])
         statistics.worst_violation =
           std::max(statistics.worst_violation, target[c] - u * contacts[c].normal);
     }
   MPI_Allreduce(MPI_IN_PLACE, &statistics.worst_violation, 1, MPI_DOUBLE, MPI_MAX, communicator);
-  MPI_Allreduce(MPI_IN_PLACE, &statistics.work, 1, MPI_DOUBLE, MPI_SUM, communicator);
+  if (options.reproducible)
+    statistics.work = exact_sum(work, communicator);
+  else
+    {
+      statistics.work = std::accumulate(work.begin(), work.end(), 0.);
+      MPI_Allreduce(MPI_IN_PLACE, &statistics.work, 1, MPI_DOUBLE, MPI_SUM, communicator);
+    }
 }
 
 template <int dim>
@@ -175,6 +195,7 @@ template <int dim>
 Velocities<dim>
 Solver<dim>::velocities() const
 {
+  Assert(!options.reproducible, dealii::ExcMessage("These are copies"));
   Velocities<dim> result{{}, velocity.rigid, velocity.spin};
   for (const auto &node : velocity.nodes)
     result.nodes.push_back(to_tensor<dim>(node));

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/contact/messages.h>
 #include <coracle/contact/warm_start.h>
 
 #include <algorithm>
@@ -25,6 +26,57 @@ WarmStart<dim>::find(const Key &key) const
       if (slots[i].key.point == key.point && slots[i].key.facet == key.facet)
         return slots[i].impulse;
   return {};
+}
+
+template <int dim>
+std::vector<dealii::Tensor<1, dim>>
+WarmStart<dim>::find(const std::vector<Key> &keys) const
+{
+  std::vector<dealii::Tensor<1, dim>> result;
+  result.reserve(keys.size());
+  for (const Key &key : keys)
+    result.push_back(find(key));
+  return result;
+}
+
+// Contacts are few, and only those that had no impulse here, or were elsewhere, are asked for.
+template <int dim>
+std::vector<dealii::Tensor<1, dim>>
+WarmStart<dim>::find_on_all_ranks(const std::vector<Key> &keys, MPI_Comm communicator) const
+{
+  const int n = n_ranks(communicator), me = my_rank(communicator);
+  auto      result = find(keys);
+  if (n == 1)
+    return result;
+  std::vector<std::vector<Key>> asked(n);
+  std::vector<std::size_t>      missing;
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (result[k].norm_square() == 0)
+      missing.push_back(k);
+  for (int r = 0; r < n; ++r)
+    if (r != me)
+      for (const std::size_t k : missing)
+        asked[r].push_back(keys[k]);
+  struct Found
+  {
+    std::size_t             place;
+    std::array<double, dim> impulse;
+  };
+  std::vector<std::vector<Found>> answers(n);
+  const auto                      questions = all_to_all(asked, communicator);
+  for (int r = 0; r < n; ++r)
+    for (std::size_t i = 0; i < questions[r].size(); ++i)
+      if (const auto impulse = find(questions[r][i]); impulse.norm_square() > 0)
+        {
+          answers[r].push_back({i, {}});
+          for (int d = 0; d < dim; ++d)
+            answers[r].back().impulse[d] = impulse[d];
+        }
+  for (const auto &from_rank : all_to_all(answers, communicator))
+    for (const Found &found : from_rank)
+      for (int d = 0; d < dim; ++d)
+        result[missing[found.place]][d] = found.impulse[d];
+  return result;
 }
 
 template <int dim>

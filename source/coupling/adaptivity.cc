@@ -90,6 +90,7 @@ Adaptivity<dim>::Adaptivity(const Parameters           &root,
   balance_interval         = load.integer("Interval in steps");
   largest_imbalance        = load.quantity("Largest imbalance");
   contact_weight           = load.quantity("Work of a contact");
+  reproducible             = root.flag("Reproducible");
 }
 
 template <int dim>
@@ -173,7 +174,9 @@ Adaptivity<dim>::update(MaterialPointSystem<dim> &points,
       state.steps     = 0;
       state.travelled = 0;
     }
-  if (++state.steps_since_balance >= balance_interval)
+  // Sharing out forgets what contact did in leaves, which criteria may ask for.
+  const bool may_forget = !reproducible || criteria.empty() || state.steps == 0;
+  if (++state.steps_since_balance >= balance_interval && may_forget)
     balance(points, contacts);
 }
 

@@ -42,6 +42,7 @@ ContactCoupling<dim>::ContactCoupling(const contact::ContactOptions &options,
   : initial_overlap(options.initial_overlap)
   , comm(comm)
   , method(options.method)
+  , reproducible(options.reproducible)
   , on_grid({options.method == contact::Method::grid,
              options.between_fields,
              options.friction_between_fields},
@@ -253,14 +254,20 @@ ContactCoupling<dim>::solve_on_surface(MaterialPointSystem<dim> &points,
   if (system.report().n_contacts == 0)
     return;
   received.resize(points.bodies.size());
+  RankSums given(dim * received.size(), reproducible);
   for (unsigned int c = 0; c < system.contacts().size(); ++c)
     if (const auto &contact = system.contacts()[c]; contact.set < received.size())
       {
         const auto &impulse = system.impulses().impulse[c];
-        received[contact.set] += impulse;
+        for (int d = 0; d < dim; ++d)
+          given.add(dim * contact.set + d, impulse[d]);
         const auto &body = *std::next(points.bodies.begin(), contact.set);
         in_leaves.add(points.octree.find(body.points.position(contact.point)), impulse.norm());
       }
+
+  const auto share = given.share(comm);
+  for (unsigned int i = 0; i < share.size(); ++i)
+    received[i / dim][i % dim] += share[i];
 
   system.point_impulses([&](const unsigned int number, const auto &p, const auto &c) {
     fields[number / n_nodes]->add_impulse(number % n_nodes, p, c);

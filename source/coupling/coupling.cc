@@ -6,11 +6,36 @@
 
 namespace coracle
 {
+namespace
+{
+/// What does not know how to be the same on any number of ranks.
+void
+refuse_irreproducible(const Parameters &root)
+{
+  const Parameters contact = root.section("Contact"), bodies = root.section("Bodies");
+  if (contact.choice("Method") == "grid" || contact.choice("Between fields") == "grid")
+    throw root.error("Reproducible",
+                     "contact on the grid's nodes is not reproducible",
+                     "Contact/Method or Contact/Between fields is grid",
+                     "set Reproducible = false, or let bodies meet at surfaces");
+  for (const std::string &name : bodies.section_names())
+    if (bodies.section(name).choice("Kind") == "meshless fluid")
+      throw root.error("Reproducible",
+                       "the meshless fluid is not reproducible",
+                       "'" + name + "' is one; its pressures are solved to a tolerance",
+                       "set Reproducible = false");
+}
+} // namespace
+
 template <int dim>
 void
 CouplingOptions<dim>::declare(Declaration &root)
 {
   root.list("Gravity", "", "m/s^2", "g", "Acceleration of everything; empty is none.");
+  root.flag("Reproducible",
+            false,
+            "Results are the same on any number of ranks, bit by bit, on machines that compute "
+            "alike; steps take longer. Not with contact on the grid's nodes");
   Declaration &time = root.section("Time", "How long steps are.");
   time.quantity("Safety factor",
                 "0.5",
@@ -37,10 +62,13 @@ CouplingOptions<dim>::read(const Parameters &root)
   result.safety_factor  = root.section("Time").quantity("Safety factor");
   result.largest_step   = root.section("Time").quantity("Largest step");
   result.smallest_share = root.section("Time").quantity("Smallest share");
+  result.reproducible   = root.flag("Reproducible");
   // Contact on the grid's nodes knows one record of each.
   const Parameters contact = root.section("Contact");
   result.split_fields = contact.flag("Split fields") && contact.choice("Method") == "surface" &&
                         contact.choice("Between fields") != "grid";
+  if (result.reproducible)
+    refuse_irreproducible(root);
   const auto gravity = root.list("Gravity");
   if (!gravity.empty() && gravity.size() != dim)
     throw root.error("Gravity",
@@ -96,13 +124,18 @@ template <int dim>
 Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree)
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
-  , structure(root, materials, options.gravity, comm)
+  , structure(root, materials, options.gravity, options.reproducible, comm)
   , points(root, materials, options.gravity, met_surfaces(root), comm, saved_octree)
   , fluids(root, options.gravity, points.octree, structure, saved_octree.empty())
-  , contacts(contact::ContactOptions(root.section("Contact")), points, structure, comm)
+  , contacts(contact::ContactOptions(root.section("Contact"), options.reproducible),
+             points,
+             structure,
+             comm)
   , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
   , comm(comm)
 {
+  if (options.reproducible)
+    points.make_reproducible();
   if (saved_octree.empty())
     {
       projected = contacts.resolve_initial_overlaps(root, points, structure);

@@ -249,6 +249,7 @@ FieldSplit<dim>::find_near_leaves(const double skin, const bool gimp)
     if (const contact::Box box = reach(leaf, gimp); overlap(box, all))
       if (tree.find(box, found); !found.empty())
         {
+          std::sort(found.begin(), found.end());
           place_of_leaf[leaf] = near_leaves.size();
           near_leaves.push_back(leaf);
           near.insert(near.end(), found.begin(), found.end());

@@ -319,11 +319,17 @@ MaterialPointBody<dim>::set_initial_pressure(const Parameters &body)
 
 template <int dim>
 double
-MaterialPointBody<dim>::damp(const double time, const double dt)
+MaterialPointBody<dim>::damp(const double time, const double dt, MPI_Comm comm)
 {
   if (damping_rate == 0 || time >= damping_end)
     return 0;
-  const double before = points.kinetic_energy(), factor = std::exp(-damping_rate * dt);
+  const double factor = std::exp(-damping_rate * dt);
+  RankSums     kinetic(1, points.reproducible);
+  if (points.reproducible)
+    kinetic.add(0, points.exact_kinetic_energy());
+  else
+    kinetic.add(0, points.kinetic_energy());
+  const double before = kinetic.share(comm)[0];
   for (int d = 0; d < dim; ++d)
     {
       double *const v = points.column(ParticleLayout<dim>::velocity + d);

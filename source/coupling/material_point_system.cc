@@ -186,20 +186,28 @@ template <int dim>
 void
 MaterialPointSystem<dim>::gather(const double time, const double dt)
 {
+  const bool any_usf = std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
+    return body.stress_update == StressUpdate::usf;
+  });
+  // Exact sums are made once: all forces together.
+  const auto gives_force_later = [&](const auto &body) {
+    return body.stress_update == StressUpdate::usf || (any_usf && reproducible);
+  };
   for (auto &f : fields)
     f.clear();
   for (auto &body : bodies)
     {
-      const double damped = body.damp(time, dt);
+      const double damped = body.damp(time, dt, octree.triangulation.get_communicator());
       energy.damping += damped;
       energy.kinetic -= damped;
-      const Give give =
-        body.stress_update == StressUpdate::usf ? Give::mass_and_momentum : Give::everything;
-      particles_to_grid(octree, body.points, body.transfer, give, field(body));
     }
-  const bool any_usf = std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
-    return body.stress_update == StressUpdate::usf;
-  });
+  bound_sums(time, false);
+  for (auto &body : bodies)
+    particles_to_grid(octree,
+                      body.points,
+                      body.transfer,
+                      gives_force_later(body) ? Give::mass_and_momentum : Give::everything,
+                      field(body));
   if (any_usf)
     {
       // Stresses follow the velocities gathered so far, then give their forces. Every body of the
@@ -211,62 +219,17 @@ MaterialPointSystem<dim>::gather(const double time, const double dt)
         }
       for (auto &body : bodies)
         if (body.stress_update == StressUpdate::usf)
-          {
-            update_stress(body, field(body).motion(), NodalField<dim>::Motion::velocity, time, dt);
-            particles_to_grid(octree, body.points, body.transfer, Give::force, field(body));
-          }
+          update_stress(body, field(body).motion(), NodalField<dim>::Motion::velocity, time, dt);
+      bound_sums(time, false);
+      for (auto &body : bodies)
+        if (gives_force_later(body))
+          particles_to_grid(octree, body.points, body.transfer, Give::force, field(body));
     }
   for (auto &body : bodies)
     if (body.body_force)
       add_body_forces(body, time, dt);
   for (auto &f : fields)
     f.sum();
-}
-
-template <int dim>
-void
-MaterialPointSystem<dim>::add_body_forces(MaterialPointBody<dim> &body,
-                                          const double            time,
-                                          const double            dt)
-{
-  using Layout   = ParticleLayout<dim>;
-  using Gathered = typename NodalField<dim>::Gathered;
-  auto &points   = body.points;
-  auto &records  = field(body).gathered();
-  body.body_force->set_time(time);
-  for (std::size_t row = 0; row < points.n_rows(); ++row)
-    if (!points.is_hole(row))
-      {
-        const auto             x = points.position(row);
-        const double           m = points.column(Layout::mass)[row];
-        dealii::Tensor<1, dim> force;
-        for (int d = 0; d < dim; ++d)
-          {
-            force[d] = m * body.body_force->value(x, d);
-            energy.external_work +=
-              dt * force[d] * (points.column(Layout::velocity + d)[row] + 0.5 * dt * force[d] / m);
-          }
-        if (points.cuts.contains(row))
-          {
-            const unsigned int i = points.cuts.find(row);
-            for (std::size_t e = points.cuts.begin[i]; e < points.cuts.begin[i + 1]; ++e)
-              for (int d = 0; d < dim; ++d)
-                records[points.cuts.entries[e].node][Gathered::force + d] +=
-                  points.cuts.entries[e].value * force[d];
-            continue;
-          }
-        const double half = body.margin_of_shape() * points.column(Layout::size)[row];
-        for_each_piece(octree,
-                       x,
-                       half,
-                       [&](const int leaf, const auto &piece, const double fraction) {
-                         const CornerShape<dim> shape(unit_coordinates(octree, leaf, piece));
-                         for (int c = 0; c < (1 << dim); ++c)
-                           for (int d = 0; d < dim; ++d)
-                             records[octree.nodes(leaf)[c]][Gathered::force + d] +=
-                               fraction * shape.value[c] * force[d];
-                       });
-      }
 }
 
 template <int dim>
@@ -308,6 +271,7 @@ MaterialPointSystem<dim>::move(const double dt)
 {
   for (auto &f : fields)
     {
+      f.sum_energies();
       const auto &books = f.energies();
       energy.external_work += books.gravity;
       energy.boundary += books.boundary;
@@ -315,6 +279,7 @@ MaterialPointSystem<dim>::move(const double dt)
       energy.transfer += books.given - books.gathered;
       f.clear_momentum();
     }
+  bound_sums(0, true);
   // Lost to the grid and back: (particles - gathered) before, (given - particles) after the step.
   energy.transfer += energy.kinetic;
   energy.kinetic = 0;
@@ -323,8 +288,9 @@ MaterialPointSystem<dim>::move(const double dt)
       // The fraction is meant for a stable step, so that shorter steps do not damp more.
       TransferOptions transfer = body.transfer;
       transfer.pic_fraction    = share_of_step(body, body.transfer.pic_fraction, dt);
-      energy.kinetic +=
+      const double kinetic =
         grid_to_particles(octree, transfer, dt, shares_musl_field(body), field(body), body.points);
+      energy.kinetic += reproducible ? kinetic_energy(body) : kinetic;
     }
   energy.transfer -= energy.kinetic;
 }
@@ -340,10 +306,12 @@ MaterialPointSystem<dim>::update_stress(MaterialPointBody<dim> &body,
   const StressOptions options = {body.transfer.shape,
                                  body.volume_strain,
                                  share_of_step(body, body.volume_smoothing, dt),
-                                 dt};
+                                 dt,
+                                 reproducible};
   body.sweep = update_particle_stress(octree, velocity, place, body.material, options, body.points);
-  body.internal_energy += body.sweep.work;
-  energy.internal += body.sweep.work;
+  const double work = reproducible ? on_first_rank(body.sweep.exact_work) : body.sweep.work;
+  body.internal_energy += work;
+  energy.internal += work;
   if (body.sweep.bad_row >= 0 && !failure)
     {
       const auto        &points = body.points;
@@ -391,7 +359,7 @@ MaterialPointSystem<dim>::locate(const double time)
         if (!failure)
           failure.emplace(lost);
       }
-  if (++steps_since_sort >= steps_between_sorts)
+  if (++steps_since_sort >= steps_between_sorts || reproducible)
     sort();
 }
 
@@ -432,8 +400,9 @@ MaterialPointSystem<dim>::redistribute_particles()
 
 template <int dim>
 void
-MaterialPointSystem<dim>::book_split_merge(MaterialPointBody<dim> &body, const double lost)
+MaterialPointSystem<dim>::book_split_merge(MaterialPointBody<dim> &body, const ExactSum &sum)
 {
+  const double lost = reproducible ? on_first_rank(sum) : sum.value();
   energy.kinetic -= lost;
   energy.internal += lost;
   body.internal_energy += lost;

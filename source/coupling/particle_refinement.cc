@@ -249,7 +249,7 @@ ParticleRefinement<dim>::adapt(MaterialPointSystem<dim>   &points,
           split_merge.split(split.row, split.arm, id);
           id += SplitMerge<dim>::n_children - 1;
         }
-      points.book_split_merge(body, split_merge.lost_energy());
+      points.book_split_merge(body, split_merge.lost_energy_sum());
       changes += n_new + body.points.ledger.merged - before;
       ++b;
     }

@@ -22,6 +22,7 @@ public:
   const Material      &material;
   const bool           gimp, cell_mean;
   const double         smoothing, dt;
+  const bool           exact_work;
   MaterialPoints<dim> &points;
   StressSweep          result{};
   Pack8 work{}, kinetic{}, smallest_density = splat<Pack8>(std::numeric_limits<double>::max());
@@ -43,7 +44,7 @@ public:
         update_lone(stray.row, stray_gradient(stray), stray.leaf, stray.leaf);
     for (unsigned int i = 0; i < points.cuts.size(); ++i)
       update_lone(points.cuts.row[i], cut_gradient(i), points.cuts.leaf[i], points.cuts.mean[i]);
-    result.work    = sum(work);
+    result.work    = exact_work ? result.exact_work.value() : sum(work);
     result.kinetic = sum(kinetic);
     if (!std::isfinite(result.work + result.kinetic) || !std::isfinite(result.rate) ||
         !(-largest(Pack8(-smallest_density)) > 0))
@@ -151,6 +152,11 @@ private:
     result.rate           = std::max(result.rate, rate);
     result.diffusion_rate = std::max(result.diffusion_rate, material.diffusivity() / (size * size));
     speed_square = wave_speed = Pack8{};
+    if (exact_work)
+      {
+        result.exact_work.add(sum(work));
+        work = Pack8{};
+      }
   }
 
   Matrix<dim, double> stray_gradient(const typename MaterialPoints<dim>::Stray &stray) const
@@ -362,6 +368,7 @@ update_particle_stress(const Octree<dim>     &octree,
                                                       cell_mean,
                                                       cell_mean ? options.volume_smoothing : 0.,
                                                       options.dt,
+                                                      options.exact_work,
                                                       points};
       sweep.run();
       return sweep.result;

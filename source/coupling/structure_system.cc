@@ -10,8 +10,9 @@ template <int dim>
 StructureSystem<dim>::StructureSystem(const Parameters             &root,
                                       const MaterialLibrary        &materials,
                                       const dealii::Tensor<1, dim> &gravity,
+                                      const bool                    reproducible,
                                       MPI_Comm                      comm)
-  : comm(comm)
+  : comm(comm), reproducible(reproducible)
 {
   const Parameters bodies = root.section("Bodies");
   for (const std::string &name : bodies.section_names())
@@ -19,7 +20,7 @@ StructureSystem<dim>::StructureSystem(const Parameters             &root,
       const Parameters  body = bodies.section(name);
       const std::string kind = body.choice("Kind");
       if (kind == "solid")
-        solids.emplace_back(body, materials, gravity, comm);
+        solids.emplace_back(body, materials, gravity, comm, reproducible);
       else if (kind == "rigid")
         rigids.emplace_back(body, gravity, comm);
     }
@@ -224,13 +225,18 @@ StructureSystem<dim>::apply_contact(
     else
       {
         unsigned int i = first_node[index];
+        RankSums     sums(dim, reproducible);
         for (const unsigned int local : body.surface_nodes())
           {
-            received[index] += impulse[i];
+            for (int d = 0; d < dim; ++d)
+              sums.add(d, impulse[i][d]);
             body.add_contact_impulse(local, impulse[i]);
             body.add_correction(local, correction[i]);
             ++i;
           }
+        const auto share = sums.share(comm);
+        for (int d = 0; d < dim; ++d)
+          received[index][d] += share[d];
       }
     body.apply_contact_impulses();
     body.apply_corrections();

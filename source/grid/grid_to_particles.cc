@@ -158,7 +158,7 @@ private:
               }
       }
     if constexpr (remap)
-      sums.give_to(field.gathered(), nodes);
+      sums.give_to(field, nodes);
   }
 
   void store_affine(const std::size_t        row,
@@ -199,7 +199,7 @@ private:
                                  fraction,
                                  piece - centre,
                                  sums);
-                       sums.give_to(field.gathered(), octree.nodes(leaf));
+                       sums.give_to(field, octree.nodes(leaf));
                      });
   }
 
@@ -244,8 +244,9 @@ private:
         const Vector<dim, double> velocity = get_vector(points, Layout::velocity, row);
         for (const auto *entry = begin; entry != end; ++entry)
           for (int d = 0; d < dim; ++d)
-            field.gathered()[entry->node][Gathered::momentum + d] +=
-              m * entry_velocity<dim, affine>(points, row, velocity, *entry, d);
+            field.give(entry->node,
+                       Gathered::momentum + d,
+                       m * entry_velocity<dim, affine>(points, row, velocity, *entry, d));
       }
   }
 

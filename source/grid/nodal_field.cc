@@ -27,6 +27,8 @@ NodalField<dim>::reinit()
     std::fill(r.begin(), r.end(), NodeRecord());
   };
   clear(records);
+  if (is_reproducible)
+    clear(rests);
   clear(motions);
   clear(impulses);
   shifts.assign(octree.n_nodes(), dealii::Tensor<1, dim>());
@@ -54,6 +56,41 @@ NodalField<dim>::clear()
       shifted.resize(n_records(), 0);
     }
   std::fill(records.begin(), records.end(), NodeRecord());
+}
+
+template <int dim>
+void
+NodalField<dim>::bound(const Bounds &bounds)
+{
+  // Nodes of leaves around a node hang on it, with weights that are multiples of 2^-6 at least.
+  constexpr int bits_of_weights = 6;
+  const int     bits = bits_of_weights + static_cast<int>(std::ceil(std::log2(bounds.number)));
+  const auto    set  = [&](const unsigned int place, const double largest) {
+    high_grid[place] = SumGrid(largest, bits);
+    low_grid[place]  = SumGrid(high_grid[place].largest_rest(), bits);
+  };
+  set(Gathered::mass, bounds.mass);
+  for (int d = 0; d < dim; ++d)
+    {
+      set(Gathered::momentum + d, bounds.momentum);
+      set(Gathered::force + d, bounds.force);
+    }
+  rests.resize(n_records());
+  std::fill(rests.begin(), rests.end(), NodeRecord());
+}
+
+template <int dim>
+double
+NodalField<dim>::largest_velocity() const
+{
+  double result = 0;
+  for (unsigned int i = 0; i < octree.n_owned_nodes(); ++i)
+    for (int d = 0; d < 2 * dim; ++d)
+      result = std::max(result, std::abs(motions[i][d]));
+  for (unsigned int i = octree.n_nodes(); i < n_records(); ++i)
+    for (int d = 0; d < 2 * dim; ++d)
+      result = std::max(result, std::abs(motions[i][d]));
+  return result;
 }
 
 template <int dim>
@@ -108,6 +145,22 @@ NodalField<dim>::sum()
 {
   condense(records);
   sum_to_owners(records);
+  if (is_reproducible)
+    sum_rests();
+}
+
+// Both sums were exact so far: one rounding makes them what the owner has.
+template <int dim>
+void
+NodalField<dim>::sum_rests()
+{
+  condense(rests);
+  sum_to_owners(rests);
+  for_each_owned([&](const unsigned int i) {
+    for (unsigned int k = 0; k < 8; ++k)
+      records[i][k] += rests[i][k];
+    rests[i] = NodeRecord();
+  });
 }
 
 template <int dim>
@@ -123,9 +176,41 @@ void
 NodalField<dim>::predict(const double dt, const dealii::Tensor<1, dim> &gravity)
 {
   books = Energies();
+  if (is_reproducible)
+    exact_books = RankSums(5, true);
   for_each_owned([&](const unsigned int i) { predict_node(i, dt, gravity); });
   fix_boundary_nodes(dt, gravity);
   distribute();
+}
+
+template <int dim>
+inline void
+NodalField<dim>::book(const Energies &e)
+{
+  if (is_reproducible)
+    {
+      exact_books.add(0, e.gathered);
+      exact_books.add(1, e.gravity);
+      exact_books.add(2, e.boundary);
+      exact_books.add(3, e.contact);
+      exact_books.add(4, e.given);
+      return;
+    }
+  books.gathered += e.gathered;
+  books.gravity += e.gravity;
+  books.boundary += e.boundary;
+  books.contact += e.contact;
+  books.given += e.given;
+}
+
+template <int dim>
+void
+NodalField<dim>::sum_energies()
+{
+  if (!is_reproducible)
+    return;
+  const auto all = exact_books.share(octree.triangulation.get_communicator());
+  books          = {all[0], all[1], all[2], all[3], all[4]};
 }
 
 template <int dim>
@@ -141,17 +226,19 @@ NodalField<dim>::predict_node(const unsigned int            i,
   if (mass <= no_mass)
     return;
   const double inverse = 1. / mass;
+  Energies     e;
   for (unsigned int d = 0; d < dim; ++d)
     {
       const double before     = r[Gathered::momentum + d] * inverse;
       const double change     = dt * (r[Gathered::force + d] * inverse + gravity[d]);
       m[Motion::change + d]   = change;
       m[Motion::velocity + d] = before + change;
-      books.gathered += 0.5 * mass * before * before;
-      books.gravity += mass * dt * gravity[d] * (before + 0.5 * change);
-      books.given += 0.5 * mass * (before + change) * (before + change);
+      e.gathered += 0.5 * mass * before * before;
+      e.gravity += mass * dt * gravity[d] * (before + 0.5 * change);
+      e.given += 0.5 * mass * (before + change) * (before + change);
     }
   m[Motion::mass] = mass;
+  book(e);
 }
 
 template <int dim>
@@ -162,10 +249,12 @@ NodalField<dim>::fix_boundary_nodes(const double dt, const dealii::Tensor<1, dim
     NodeRecord  &m    = motions[i];
     const double mass = m[Motion::mass], free = m[Motion::velocity + d],
                  change = m[Motion::change + d], before = free - change;
+    Energies e;
     // Forces on a fixed node do no work; what is lost is what particles brought there.
-    books.gravity -= mass * dt * gravity[d] * (before + 0.5 * change);
-    books.given -= 0.5 * mass * free * free;
-    books.boundary += 0.5 * mass * before * before;
+    e.gravity -= mass * dt * gravity[d] * (before + 0.5 * change);
+    e.given -= 0.5 * mass * free * free;
+    e.boundary += 0.5 * mass * before * before;
+    book(e);
     // The change takes what particles brought, so that they stop as well.
     m[Motion::change + d]   = -before;
     m[Motion::velocity + d] = 0;
@@ -217,22 +306,24 @@ NodalField<dim>::apply_impulse(const unsigned int node)
   NodeRecord                  &r       = impulses[node];
   const dealii::Tensor<1, dim> inverse = inverse_mass(node);
   bool                         moves   = false;
+  Energies                     e;
   const bool owned = split ? split->is_owned(node) : node < octree.n_owned_nodes();
   for (unsigned int d = 0; d < dim; ++d)
     {
       if (owned && inverse[d] > 0)
         {
           const double mean = motions[node][Motion::velocity + d] + 0.5 * r[d] * inverse[d];
-          books.given += r[d] * mean;
+          e.given += r[d] * mean;
           // Forces and contact act at once, over the same way: from the velocity at the start of
           // the step to that at its end. So bodies that lean on each other lose nothing.
-          books.contact += r[d] * (mean - 0.5 * motions[node][Motion::change + d]);
+          e.contact += r[d] * (mean - 0.5 * motions[node][Motion::change + d]);
         }
       motions[node][Motion::velocity + d] += r[d] * inverse[d];
       motions[node][Motion::change + d] += r[d] * inverse[d];
       shifts[node][d] = r[dim + d] * inverse[d];
       moves           = moves || shifts[node][d] != 0;
     }
+  book(e);
   if (moves && !shifted[node])
     {
       shifted[node] = 1;
@@ -329,7 +420,8 @@ template <int dim>
 std::size_t
 NodalField<dim>::memory_consumption() const
 {
-  return 3 * records.capacity() * sizeof(NodeRecord) + shifts.capacity() * (sizeof(shifts[0]) + 1);
+  return (3 * records.capacity() + rests.capacity()) * sizeof(NodeRecord) +
+         shifts.capacity() * (sizeof(shifts[0]) + 1);
 }
 
 template class NodalField<2>;

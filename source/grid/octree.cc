@@ -154,12 +154,13 @@ template <int dim>
 void
 Octree<dim>::enumerate()
 {
-  // Order of the space-filling curve: coarse cell, then child by child.
+  // Order of the space-filling curve, through all ranks: coarse cell, then child by child.
   using NumberedCell = typename dealii::DoFHandler<dim>::active_cell_iterator;
   std::vector<NumberedCell> cells;
   for (const auto &cell : dof_handler.active_cell_iterators())
     if (!cell->is_artificial())
       cells.push_back(cell);
+  // Coarse cells of ids are p4est's trees.
   const auto curve = [](const NumberedCell &a, const NumberedCell &b) {
     if (a->is_locally_owned() != b->is_locally_owned())
       return a->is_locally_owned();
@@ -313,6 +314,14 @@ Octree<dim>::make_hanging_nodes()
       hanging[node_to_hanging[node]].parents.emplace_back(
         exchange.indices().global_to_local(parent.parent), parent.weight);
     }
+  // Sums over parents must not depend on how nodes are numbered.
+  for (HangingNode &node : hanging)
+    std::sort(node.parents.begin(), node.parents.end(), [this](const auto &a, const auto &b) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (positions[a.first][d] != positions[b.first][d])
+          return positions[a.first][d] < positions[b.first][d];
+      return false;
+    });
 }
 
 template <int dim>

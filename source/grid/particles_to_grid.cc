@@ -37,7 +37,7 @@ public:
     , gimp(options.shape == ParticleShape::gimp)
     , averaging(force && options.average_pressure)
     , cutting(!points.cuts.empty())
-    , records(field.gathered())
+    , field(field)
     , stress(points.layout().stress)
     , affine_column(points.layout().affine)
   {}
@@ -110,7 +110,7 @@ private:
               give(sample, sums);
             }
       }
-    sums.give_to(records, octree.nodes(leaf));
+    sums.give_to(field, octree.nodes(leaf));
   }
 
   void give_stray(const typename MaterialPoints<dim>::Stray &stray)
@@ -133,7 +133,7 @@ private:
                      sample.offset          = piece - centre;
                      CornerSums<dim> sums;
                      give(sample, sums);
-                     sums.give_to(records, octree.nodes(leaf));
+                     sums.give_to(field, octree.nodes(leaf));
                    });
   }
 
@@ -165,23 +165,23 @@ private:
     const double p = averaging ? mean : points.column(stress)[row];
     for (std::size_t e = points.cuts.begin[i]; e < points.cuts.begin[i + 1]; ++e)
       {
-        const auto &entry  = points.cuts.entries[e];
-        NodeRecord &record = records[entry.node];
+        const auto &entry = points.cuts.entries[e];
         if constexpr (mass)
           {
-            record[Gathered::mass] += m * entry.value;
+            field.give(entry.node, Gathered::mass, m * entry.value);
             for (int d = 0; d < dim; ++d)
-              record[Gathered::momentum + d] +=
-                m * entry_velocity<dim, affine>(points, row, velocity, entry, d);
+              field.give(entry.node,
+                         Gathered::momentum + d,
+                         m * entry_velocity<dim, affine>(points, row, velocity, entry, d));
           }
         if constexpr (force)
           for (int d = 0; d < dim; ++d)
             {
               if constexpr (isotropic)
-                record[Gathered::force + d] += v * p * entry.gradient[d];
+                field.give(entry.node, Gathered::force + d, v * p * entry.gradient[d]);
               else
                 for (int k = 0; k < dim; ++k)
-                  record[Gathered::force + d] -= v * s(d, k) * entry.gradient[k];
+                  field.give(entry.node, Gathered::force + d, -v * s(d, k) * entry.gradient[k]);
             }
       }
   }
@@ -253,7 +253,7 @@ private:
   const Octree<dim>   &octree;
   MaterialPoints<dim> &points;
   const bool           gimp, averaging, cutting;
-  NodeRecords         &records;
+  NodalField<dim>     &field;
   const int            stress, affine_column;
 };
 

@@ -333,21 +333,19 @@ CouplingOutput<dim>::add_bodies(Report<dim> &report, Coupling<dim> &coupling)
   unsigned int s     = 0;
   for (const auto &body : coupling.points.bodies)
     {
-      std::array<double, 1 + 2 * dim> sums{};
-      const auto                     &points = body.points;
+      const auto &points = body.points;
+      RankSums    rank_sums(1 + 2 * dim, points.reproducible);
       for (std::size_t row = 0; row < points.n_rows(); ++row)
         {
           const double m = points.column(Layout<dim>::mass)[row];
-          sums[0] += m;
+          rank_sums.add(0, m);
           for (int d = 0; d < dim; ++d)
             {
-              sums[1 + d] += m * points.column(Layout<dim>::position + d)[row];
-              sums[1 + dim + d] += m * points.column(Layout<dim>::velocity + d)[row];
+              rank_sums.add(1 + d, m * points.column(Layout<dim>::position + d)[row]);
+              rank_sums.add(1 + dim + d, m * points.column(Layout<dim>::velocity + d)[row]);
             }
         }
-      dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums.data(), sums.size()),
-                                  comm,
-                                  dealii::ArrayView<double>(sums.data(), sums.size()));
+      const auto      sums = rank_sums.total(comm);
       BodyReport<dim> entry{body.name(), sums[0], {}, {}, {}};
       for (int d = 0; d < dim && sums[0] > 0; ++d)
         {
@@ -467,7 +465,7 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
                                    3.);
               view.pressure = pressure.data();
             }
-          probe.set_columns(view, statistics);
+          probe.set_columns(view, statistics, points.reproducible);
         }
   statistics.end_row();
 }

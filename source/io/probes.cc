@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <deal.II/base/exceptions.h>
 
+#include <coracle/base/exact_sum.h>
 #include <coracle/base/mpi.h>
 #include <coracle/io/probes.h>
 
@@ -188,25 +189,25 @@ PointProbe<dim>::add_columns(const ProbeDescription<dim> &description, Statistic
 
 template <int dim>
 void
-PointProbe<dim>::set_columns(const ParticleView &particles, Statistics &statistics) const
+PointProbe<dim>::set_columns(const ParticleView &particles,
+                             Statistics         &statistics,
+                             const bool          reproducible) const
 {
   // Number, mass, mass times pressure, momentum.
-  std::array<double, 3 + dim> local{}, sums;
+  RankSums rank_sums(3 + dim, reproducible);
   for (std::size_t i = 0; i < particles.n_particles; ++i)
     if (particles.mass[i] > 0 &&
         description.position.distance(entry<dim>(particles.position, i)) <= description.radius)
       {
         const double mass     = particles.mass[i];
         const auto   velocity = entry<dim>(particles.velocity, i);
-        local[0] += 1;
-        local[1] += mass;
-        local[2] += mass * particles.pressure[i];
+        rank_sums.add(0, 1);
+        rank_sums.add(1, mass);
+        rank_sums.add(2, mass * particles.pressure[i]);
         for (unsigned int d = 0; d < dim; ++d)
-          local[3 + d] += mass * velocity[d];
+          rank_sums.add(3 + d, mass * velocity[d]);
       }
-  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(local),
-                              comm,
-                              dealii::ArrayView<double>(sums));
+  auto sums = rank_sums.total(comm);
 
   const std::string prefix = description.prefix();
   const double      mass   = sums[1];

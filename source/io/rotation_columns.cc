@@ -29,7 +29,7 @@ rotation_of(const MaterialPoints<dim>    &points,
 {
   using Layout = ParticleLayout<dim>;
   // Angular momentum, then the inertia row by row; holes have no mass.
-  std::array<double, 12> sums{};
+  RankSums rank_sums(12, points.reproducible);
   for (std::size_t row = 0; row < points.n_rows(); ++row)
     {
       const double            m = points.column(Layout::mass)[row];
@@ -42,14 +42,12 @@ rotation_of(const MaterialPoints<dim>    &points,
       const auto r = in_space<dim>(arm), l = cross_product_3d(r, in_space<dim>(speed));
       for (int i = 0; i < 3; ++i)
         {
-          sums[i] += m * l[i];
+          rank_sums.add(i, m * l[i]);
           for (int j = 0; j < 3; ++j)
-            sums[3 + 3 * i + j] += m * ((i == j ? r.norm_square() : 0.) - r[i] * r[j]);
+            rank_sums.add(3 + 3 * i + j, m * ((i == j ? r.norm_square() : 0.) - r[i] * r[j]));
         }
     }
-  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(sums.data(), sums.size()),
-                              comm,
-                              dealii::ArrayView<double>(sums.data(), sums.size()));
+  const auto           sums = rank_sums.total(comm);
   Rotation             result;
   dealii::Tensor<2, 3> inertia;
   for (int i = 0; i < 3; ++i)

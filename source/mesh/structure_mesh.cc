@@ -7,6 +7,7 @@
 #include <coracle/mesh/mesh_generation.h>
 #include <coracle/mesh/structure_mesh.h>
 
+#include <algorithm>
 #include <string>
 
 namespace coracle
@@ -144,6 +145,12 @@ StructureMesh<dim>::number_nodes()
         HangingNode hanging{indices.global_to_local(node), {}};
         for (const auto &[parent, weight] : *constraints.get_constraint_entries(node))
           hanging.parents.emplace_back(indices.global_to_local(parent), weight);
+        // Sums over them must not depend on local numbers.
+        std::sort(hanging.parents.begin(),
+                  hanging.parents.end(),
+                  [&indices](const auto &a, const auto &b) {
+                    return indices.local_to_global(a.first) < indices.local_to_global(b.first);
+                  });
         hanging_nodes.push_back(hanging);
       }
   number_elements();

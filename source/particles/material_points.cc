@@ -4,6 +4,8 @@
 
 #include <coracle/particles/material_points.h>
 
+#include <algorithm>
+
 namespace coracle
 {
 template <int dim>
@@ -48,6 +50,13 @@ MaterialPoints<dim>::sort(const unsigned int n_cells, const std::vector<int> &ce
   for (unsigned int c = n_cells; c > 0; --c)
     begins[c] = begins[c - 1];
   begins[0] = 0;
+  if (reproducible)
+    for (const unsigned int c : occupied)
+      std::sort(source.begin() + begins[c],
+                source.begin() + begins[c + 1],
+                [this](const unsigned int a, const unsigned int b) {
+                  return columns[Layout::id][a] < columns[Layout::id][b];
+                });
   columns.reorder(source);
   n_holes = 0;
   strays.clear();
@@ -152,6 +161,21 @@ MaterialPoints<dim>::kinetic_energy() const
       result += 0.5 * load<Pack8>(column(Layout::mass) + row) * square;
     }
   return sum(result);
+}
+
+template <int dim>
+ExactSum
+MaterialPoints<dim>::exact_kinetic_energy() const
+{
+  ExactSum result;
+  for (std::size_t row = 0; row < n_rows(); ++row)
+    {
+      double square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += column(Layout::velocity + d)[row] * column(Layout::velocity + d)[row];
+      result.add(0.5 * column(Layout::mass)[row] * square);
+    }
+  return result;
 }
 
 template <int dim>

@@ -63,7 +63,7 @@ SplitMerge<dim>::split(const std::size_t row, const Arm &arm, const std::uint64_
   child[Layout::mass] = mass;
   child[Layout::size] *= 0.5;
   const double id = child[Layout::id];
-  lost += 0.5 * n_children * mass * v.norm_square();
+  lost.add(0.5 * n_children * mass * v.norm_square());
   for (unsigned int k = 0; k < n_children; ++k)
     {
       const dealii::Point<dim>     place = child_place(x, arm, k);
@@ -75,7 +75,7 @@ SplitMerge<dim>::split(const std::size_t row, const Arm &arm, const std::uint64_
           child[Layout::velocity + d]      = speed[d];
         }
       child[Layout::id] = k == 0 ? id : first_id + k - 1;
-      lost -= 0.5 * mass * speed.norm_square();
+      lost.add(-0.5 * mass * speed.norm_square());
       if (k == 0)
         points.columns.set_row(row, child.data());
       else
@@ -212,12 +212,12 @@ SplitMerge<dim>::store(const Merged &merged, const std::vector<unsigned int> &gr
     }
   for (const unsigned int row : group)
     {
-      lost += 0.5 * points.column(Layout::mass)[row] * velocity(row).norm_square();
+      lost.add(0.5 * points.column(Layout::mass)[row] * velocity(row).norm_square());
       if (row != group.front())
         points.remove(row);
     }
   const unsigned int row = group.front();
-  lost -= 0.5 * merged.mass * merged.velocity.norm_square();
+  lost.add(-0.5 * merged.mass * merged.velocity.norm_square());
   for (unsigned int d = 0; d < dim; ++d)
     {
       points.column(Layout::position + d)[row]      = merged.place[d];

@@ -149,14 +149,14 @@ BoundaryConditions<dim>::velocity(const Condition   &condition,
 }
 
 template <int dim>
-typename BoundaryConditions<dim>::Work
+void
 BoundaryConditions<dim>::prescribe_velocities(Columns     &nodes,
                                               const double time,
                                               const double dt,
-                                              const double duration) const
+                                              const double duration,
+                                              RankSums    &work) const
 {
   using Node = NodeColumns<dim>;
-  Work work;
   for (const Condition &condition : conditions)
     {
       if (condition.function)
@@ -167,12 +167,11 @@ BoundaryConditions<dim>::prescribe_velocities(Columns     &nodes,
             double      &v     = nodes[Node::velocity + d][n];
             const double after = velocity(condition, nodes, n, d, dt), mean = 0.5 * (v + after),
                          internal = duration * nodes[Node::internal + d][n] * mean;
-            work.strain -= internal;
-            work.external += nodes[Node::mass][n] * (after - v) * mean - internal;
+            work.add(0, -internal);
+            work.add(1, nodes[Node::mass][n] * (after - v) * mean - internal);
             v = after;
           }
     }
-  return work;
 }
 
 template class BoundaryConditions<2>;

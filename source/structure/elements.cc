@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/exceptions.h>
+#include <coracle/base/mpi.h>
 #include <coracle/structure/elements.h>
 #include <coracle/structure/update_elements.h>
 
 #include <cmath>
-#include <numeric>
 #include <sstream>
 
 namespace coracle
@@ -131,8 +131,20 @@ Elements<dim>::compute_reference(const StructureMesh<dim> &mesh)
 }
 
 template <int dim>
+double
+Elements<dim>::largest_mass() const
+{
+  double result = 0;
+  for (unsigned int e = 0; e < n_elements; ++e)
+    result = std::max(result, data.columns[Data::mass][e]);
+  return result;
+}
+
+template <int dim>
 void
-Elements<dim>::add_mass(double *const nodal_mass, const StructureMesh<dim> &mesh) const
+Elements<dim>::add_mass(double *const             nodal_mass,
+                        const StructureMesh<dim> &mesh,
+                        const SumGrid            &grid) const
 {
   const double density = reference_density(material);
   for (unsigned int e = 0; e < n_elements; ++e)
@@ -147,8 +159,40 @@ Elements<dim>::add_mass(double *const nodal_mass, const StructureMesh<dim> &mesh
         {
           const double det = determinant<dim, double>(point_gradient<dim, double>(modes, q));
           for (int n = 0; n < n_nodes; ++n)
-            nodal_mass[mesh.elements[e][n]] += density * det * shape_value<dim>(n, q);
+            nodal_mass[mesh.elements[e][n]] += grid.round(density * det * shape_value<dim>(n, q));
         }
+    }
+}
+
+template <int dim>
+void
+Elements<dim>::make_reproducible(MPI_Comm comm)
+{
+  communicator = comm;
+  data.apart   = true;
+  data.forces.resize(std::size_t(data.n_packs) * pack_size * n_nodes * dim);
+}
+
+template <int dim>
+void
+Elements<dim>::add_rounded_forces(Columns &nodes) const
+{
+  // A node has elements around it and around nodes that hang on it, with weights like 1/4.
+  constexpr int bits    = 10;
+  constexpr int stride  = n_nodes * pack_size;
+  double        largest = 0;
+  for (const double force : data.forces)
+    largest = std::max(largest, std::abs(force));
+  const SumGrid grid(mpi::max(largest, communicator), bits);
+  for (unsigned int pack = 0; pack < data.n_packs; ++pack)
+    {
+      const unsigned int n_lanes = std::min<unsigned int>(pack_size, n_elements - pack * pack_size);
+      for (int d = 0; d < dim; ++d)
+        for (int n = 0; n < n_nodes; ++n)
+          for (unsigned int l = 0; l < n_lanes; ++l)
+            nodes[NodeColumns<dim>::internal + d]
+                 [data.connectivity[pack * stride + n * pack_size + l]] -=
+              grid.round(data.forces[(pack * dim + d) * stride + n * pack_size + l]);
     }
 }
 
@@ -166,6 +210,8 @@ Elements<dim>::update(Columns &nodes, const double dt)
       internal::update_elements<dim>(m, integration == Integration::full, nodes, dt, data, limits);
     },
     material);
+  if (data.apart)
+    add_rounded_forces(nodes);
 
   double rate = 0;
   for (int l = 0; l < pack_size; ++l)
@@ -223,10 +269,11 @@ Elements<dim>::stress(const unsigned int element) const
 }
 
 template <int dim>
-double
-Elements<dim>::hourglass_energy() const
+void
+Elements<dim>::add_hourglass_energy(RankSums &sums, const unsigned int place) const
 {
-  return std::accumulate(data.columns[Data::energy], data.columns[Data::energy] + n_elements, 0.);
+  for (unsigned int e = 0; e < n_elements; ++e)
+    sums.add(place, data.columns[Data::energy][e]);
 }
 
 template <int dim>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 
+#include <coracle/base/exact_sum.h>
 #include <coracle/structure/inertia.h>
 
 #include <vector>
@@ -23,22 +23,26 @@ namespace
 /// To volume, first moments, second moments about the origin.
 template <int dim>
 void
-add_point(const dealii::Point<dim> &x, const double dv, std::vector<double> &sums)
+add_point(const dealii::Point<dim> &x, const double dv, std::vector<ExactSum> &sums)
 {
-  sums[0] += dv;
+  sums[0].add(dv);
   for (int i = 0; i < dim; ++i)
     {
-      sums[1 + i] += x[i] * dv;
+      sums[1 + i].add(x[i] * dv);
       for (int j = 0; j < dim; ++j)
-        sums[1 + dim + i * dim + j] += x[i] * x[j] * dv;
+        sums[1 + dim + i * dim + j].add(x[i] * x[j] * dv);
     }
 }
 
 template <int dim>
 VolumeIntegrals<dim>
-total(std::vector<double> &sums, MPI_Comm comm)
+total(std::vector<ExactSum> &exact, MPI_Comm comm)
 {
-  dealii::Utilities::MPI::sum(sums, comm, sums);
+  // The same on any number of ranks, because all of them keep the body's motion.
+  ExactSum::sum(exact, comm);
+  std::vector<double> sums;
+  for (const ExactSum &sum : exact)
+    sums.push_back(sum.value());
   VolumeIntegrals<dim> result;
   result.volume = sums[0];
   for (int i = 0; i < dim; ++i)
@@ -55,18 +59,24 @@ template <int dim>
 VolumeIntegrals<dim>
 volume_integrals(const StructureMesh<dim> &mesh)
 {
-  // x_i x_j det(dx/dxi) is of degree 4 in each coordinate.
-  dealii::FEValues<dim> values(mesh.fe,
-                               dealii::QGauss<dim>(3),
-                               dealii::update_quadrature_points | dealii::update_JxW_values);
-  std::vector<double>   sums(1 + dim + dim * dim);
+  // x_i x_j det(dx/dxi) is of degree 4 in each coordinate. FEValues would take over what it knows
+  // from the cell before where that is alike, and so depend on ranks in the last digit.
+  const dealii::QGauss<dim> quadrature(3);
+  std::vector<ExactSum>     sums(1 + dim + dim * dim);
   for (const auto &cell : mesh.dof_handler.active_cell_iterators())
     if (cell->is_locally_owned())
-      {
-        values.reinit(cell);
-        for (const unsigned int q : values.quadrature_point_indices())
-          add_point(values.quadrature_point(q), values.JxW(q), sums);
-      }
+      for (unsigned int q = 0; q < quadrature.size(); ++q)
+        {
+          dealii::Point<dim>     x;
+          dealii::Tensor<2, dim> jacobian;
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              x += mesh.fe.shape_value(v, quadrature.point(q)) * cell->vertex(v);
+              jacobian += outer_product(static_cast<dealii::Tensor<1, dim>>(cell->vertex(v)),
+                                        mesh.fe.shape_grad(v, quadrature.point(q)));
+            }
+          add_point(x, determinant(jacobian) * quadrature.weight(q), sums);
+        }
   return total<dim>(sums, mesh.communicator());
 }
 
@@ -75,7 +85,7 @@ VolumeIntegrals<dim>
 sheet_integrals(const BodyMesh<dim> &mesh)
 {
   const dealii::QGauss<dim - 1> quadrature(3);
-  std::vector<double>           sums(1 + dim + dim * dim);
+  std::vector<ExactSum>         sums(1 + dim + dim * dim);
   for (const auto &facet : mesh.facets)
     for (unsigned int q = 0; q < quadrature.size(); ++q)
       {

@@ -4,6 +4,8 @@
 #include <coracle/structure/node_columns.h>
 #include <coracle/structure/selection.h>
 
+#include <cmath>
+
 namespace coracle
 {
 template <int dim>
@@ -64,21 +66,43 @@ Loads<dim>::read(const Parameters &section, const StructureMesh<dim> &mesh) cons
 
 template <int dim>
 void
-Loads<dim>::add_forces(Columns &nodes, const double time) const
+Loads<dim>::add_forces(Columns &nodes, const double time, const SumGrid &grid) const
+{
+  for_each_force(nodes, time, [&](const unsigned int node, const int d, const double force) {
+    nodes[NodeColumns<dim>::external + d][node] += grid.round(force);
+  });
+}
+
+template <int dim>
+double
+Loads<dim>::largest_force(const Columns &nodes, const double time) const
+{
+  double result = 0;
+  for_each_force(nodes, time, [&](const unsigned int, const int, const double force) {
+    result = std::max(result, std::abs(force));
+  });
+  return result;
+}
+
+template <int dim>
+template <typename Give>
+void
+Loads<dim>::for_each_force(const Columns &nodes, const double time, const Give &give) const
 {
   for (const Load &load : loads)
     {
       load.function->set_time(time);
       if (load.kind == Kind::acceleration)
-        add_acceleration(load, nodes);
+        for_each_node_force(load, nodes, give);
       else
-        add_facet_forces(load, nodes);
+        for_each_facet_force(load, nodes, give);
     }
 }
 
 template <int dim>
+template <typename Give>
 void
-Loads<dim>::add_facet_forces(const Load &load, Columns &nodes) const
+Loads<dim>::for_each_facet_force(const Load &load, const Columns &nodes, const Give &give) const
 {
   const bool         follows = (load.kind == Kind::pressure);
   const unsigned int from    = follows ? NodeColumns<dim>::position : NodeColumns<dim>::reference;
@@ -95,15 +119,17 @@ Loads<dim>::add_facet_forces(const Load &load, Columns &nodes) const
       const auto areas = nodal_areas<dim>(corners);
       for (std::size_t n = 0; n < facet.size(); ++n)
         for (int d = 0; d < dim; ++d)
-          nodes[NodeColumns<dim>::external + d][facet[n]] +=
-            follows ? -load.function->value(middle) * areas[n][d]
-                    : load.function->value(middle, d) * areas[n].norm();
+          give(facet[n],
+               d,
+               follows ? -load.function->value(middle) * areas[n][d]
+                       : load.function->value(middle, d) * areas[n].norm());
     }
 }
 
 template <int dim>
+template <typename Give>
 void
-Loads<dim>::add_acceleration(const Load &load, Columns &nodes) const
+Loads<dim>::for_each_node_force(const Load &load, const Columns &nodes, const Give &give) const
 {
   for (unsigned int n = 0; n < n_owned_nodes; ++n)
     {
@@ -111,8 +137,7 @@ Loads<dim>::add_acceleration(const Load &load, Columns &nodes) const
       for (int d = 0; d < dim; ++d)
         x[d] = nodes[NodeColumns<dim>::position + d][n];
       for (int d = 0; d < dim; ++d)
-        nodes[NodeColumns<dim>::external + d][n] +=
-          nodes[NodeColumns<dim>::mass][n] * load.function->value(x, d);
+        give(n, d, nodes[NodeColumns<dim>::mass][n] * load.function->value(x, d));
     }
 }
 

@@ -46,10 +46,12 @@ template <int dim>
 SolidBody<dim>::SolidBody(const Parameters      &body,
                           const MaterialLibrary &materials,
                           const Vector          &gravity,
-                          MPI_Comm               comm)
+                          MPI_Comm               comm,
+                          const bool             reproducible)
   : StructuralBody<dim>(body,
                         std::make_unique<const StructureMesh<dim>>(body.section("Mesh"), comm))
   , touches_itself(body.flag("Self contact"))
+  , reproducible(reproducible)
   , elements(mesh(),
              materials.get(body.text("Material"), body),
              body.choice("Integration") == "full" ? Integration::full : Integration::one_point,
@@ -61,6 +63,8 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
   , damping_start(body.section("Damping").quantity("Start"))
   , damping_end(body.section("Damping").quantity("End"))
 {
+  if (reproducible)
+    elements.make_reproducible(comm);
   set_mass();
   const Vector initial_velocity = body.template point<dim>("Initial velocity");
   for (unsigned int n = 0; n < mesh().n_nodes(); ++n)
@@ -71,11 +75,37 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
 }
 
 template <int dim>
+SumGrid
+SolidBody<dim>::sum_grid(const double largest_here) const
+{
+  // A node has elements around it and around nodes that hang on it, with weights like 1/4.
+  constexpr int bits = 10;
+  return reproducible ? SumGrid(mpi::max(largest_here, mesh().communicator()), bits) : SumGrid();
+}
+
+template <int dim>
+void
+SolidBody<dim>::round(const unsigned int first, const unsigned int n_columns)
+{
+  if (!reproducible || !mpi::any(!mesh().hanging_nodes.empty(), mesh().communicator()))
+    return;
+  Columns &nodes   = this->node_columns;
+  double   largest = 0;
+  for (unsigned int c = first; c < first + n_columns; ++c)
+    for (unsigned int n = 0; n < nodes.size(); ++n)
+      largest = std::max(largest, std::abs(nodes[c][n]));
+  const SumGrid grid = sum_grid(largest);
+  for (unsigned int c = first; c < first + n_columns; ++c)
+    for (unsigned int n = 0; n < nodes.size(); ++n)
+      nodes[c][n] = grid.round(nodes[c][n]);
+}
+
+template <int dim>
 void
 SolidBody<dim>::set_mass()
 {
   Columns &nodes = this->node_columns;
-  elements.add_mass(nodes[Node::mass], mesh());
+  elements.add_mass(nodes[Node::mass], mesh(), sum_grid(elements.largest_mass()));
   condense(Node::mass, 1);
   mesh().exchange.sum_to_owners(nodes, Node::mass, 1);
   mesh().exchange.update_ghosts(nodes, Node::mass, 1);
@@ -155,14 +185,22 @@ SolidBody<dim>::assemble_forces(const double now)
 {
   Columns &nodes = this->node_columns;
   time           = now;
+  double largest = 0;
+  if (reproducible)
+    {
+      largest = loads.largest_force(nodes, time);
+      for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
+        largest = std::max(largest, nodes[Node::mass][n] * gravity.norm());
+    }
+  const SumGrid grid = sum_grid(largest);
   for (int d = 0; d < dim; ++d)
     {
       double *const external = nodes[Node::external + d];
       std::fill_n(external, nodes.size(), 0.);
       for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
-        external[n] = nodes[Node::mass][n] * gravity[d];
+        external[n] = grid.round(nodes[Node::mass][n] * gravity[d]);
     }
-  loads.add_forces(nodes, time);
+  loads.add_forces(nodes, time, grid);
   condense(Node::internal, 2 * dim);
   mesh().exchange.sum_to_owners(nodes, Node::internal, 2 * dim);
 }
@@ -192,6 +230,8 @@ SolidBody<dim>::kick(const double duration, const double dt)
   const unsigned int  n_owned = mesh().n_owned_nodes();
   const double        half    = 0.5 * damping_at(time) * duration;
   const double *const mass    = nodes[Node::mass];
+  // On the material, of loads and supports, of damping.
+  RankSums work(3, reproducible);
 
   for (int d = 0; d < dim; ++d)
     {
@@ -210,19 +250,22 @@ SolidBody<dim>::kick(const double duration, const double dt)
         const T    after   = select(is_free, free_velocity, before);
         store(v + n, after);
         const T mean = select(is_free, T(0.5 * (before + after)), T{});
-        books.strain -= duration * sum(T(internal * mean));
-        books.external_work += duration * sum(T(external * mean));
-        books.damping += 2. * half * sum(T(load<T>(mass + n) * mean * mean));
+        work.add(0, -duration * sum(T(internal * mean)));
+        work.add(1, duration * sum(T(external * mean)));
+        work.add(2, 2. * half * sum(T(load<T>(mass + n) * mean * mean)));
       };
       unsigned int n = 0;
-      for (; n + pack_size <= n_owned; n += pack_size)
+      // Packs hold other nodes on other ranks.
+      for (; n + pack_size <= n_owned && !reproducible; n += pack_size)
         kick_rows(static_cast<Pack8 *>(nullptr), n);
       for (; n < n_owned; ++n)
         kick_rows(static_cast<double *>(nullptr), n);
     }
-  const auto work = boundary_conditions.prescribe_velocities(nodes, time, dt, duration);
-  books.strain += work.strain;
-  books.external_work += work.external;
+  boundary_conditions.prescribe_velocities(nodes, time, dt, duration, work);
+  const auto done = work.share(mesh().communicator());
+  books.strain += done[0];
+  books.external_work += done[1];
+  books.damping += done[2];
 }
 
 template <int dim>
@@ -237,8 +280,11 @@ void
 SolidBody<dim>::apply_contact_impulses()
 {
   Columns &nodes = this->node_columns;
+  round(Node::impulse, dim);
   condense(Node::impulse, dim);
   mesh().exchange.sum_to_owners(nodes, Node::impulse, dim);
+  // On the material, of loads and supports, of contact.
+  RankSums sums(3, reproducible);
   for (int d = 0; d < dim; ++d)
     for (const unsigned int n : contact_nodes)
       {
@@ -251,14 +297,16 @@ SolidBody<dim>::apply_contact_impulses()
         const double internal = halfway * nodes[Node::internal + d][n],
                      external = halfway * nodes[Node::external + d][n];
         const double work     = impulse * 0.5 * (before + v) - internal - external;
-        books.contact_work += work;
-        books.strain -= internal;
-        books.external_work += external;
-        if (inverse_mass == 0)
-          books.external_work -= work;
+        sums.add(0, -internal);
+        sums.add(1, inverse_mass == 0 ? external - work : external);
+        sums.add(2, work);
         nodes[Node::contact_force + d][n] = impulse / last_dt;
         impulse                           = 0;
       }
+  const auto done = sums.share(mesh().communicator());
+  books.strain += done[0];
+  books.external_work += done[1];
+  books.contact_work += done[2];
   distribute(Node::velocity);
 }
 
@@ -275,6 +323,7 @@ SolidBody<dim>::apply_corrections()
 {
   // From here to `move` the column holds displacements.
   Columns &nodes = this->node_columns;
+  round(Node::correction, dim);
   condense(Node::correction, dim);
   mesh().exchange.sum_to_owners(nodes, Node::correction, dim);
   for (int d = 0; d < dim; ++d)
@@ -322,20 +371,21 @@ template <int dim>
 Energies
 SolidBody<dim>::energies() const
 {
-  const Columns &nodes   = this->node_columns;
-  double         kinetic = 0;
+  const Columns &nodes = this->node_columns;
+  // As in the result.
+  RankSums sums(6, reproducible);
   for (int d = 0; d < dim; ++d)
     for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
-      kinetic +=
-        0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] * nodes[Node::velocity + d][n];
-  std::vector<double> sums = {kinetic,
-                              books.strain,
-                              elements.hourglass_energy(),
-                              books.damping,
-                              books.contact_work,
-                              books.external_work};
-  dealii::Utilities::MPI::sum(sums, mesh().communicator(), sums);
-  return {sums[0], sums[1] - sums[2], sums[2], sums[3], sums[4], sums[5]};
+      sums.add(0,
+               0.5 * nodes[Node::mass][n] * nodes[Node::velocity + d][n] *
+                 nodes[Node::velocity + d][n]);
+  sums.add(1, books.strain);
+  elements.add_hourglass_energy(sums, 2);
+  sums.add(3, books.damping);
+  sums.add(4, books.contact_work);
+  sums.add(5, books.external_work);
+  const auto all = sums.total(mesh().communicator());
+  return {all[0], all[1] - all[2], all[2], all[3], all[4], all[5]};
 }
 
 template <int dim>
@@ -343,23 +393,23 @@ BodySummary<dim>
 SolidBody<dim>::summary() const
 {
   // mass, m x, m v, force, moment about the origin
-  std::vector<double> sums(1 + 3 * dim + 3);
+  RankSums rank_sums(1 + 3 * dim + 3, reproducible);
   for (unsigned int n = 0; n < mesh().n_owned_nodes(); ++n)
     {
       const double mass  = this->node_columns[Node::mass][n];
       const Vector force = this->contact_force(n);
-      sums[0] += mass;
+      rank_sums.add(0, mass);
       for (int d = 0; d < dim; ++d)
         {
-          sums[1 + d] += mass * this->position(n)[d];
-          sums[1 + dim + d] += mass * this->velocity(n)[d];
-          sums[1 + 2 * dim + d] += force[d];
+          rank_sums.add(1 + d, mass * this->position(n)[d]);
+          rank_sums.add(1 + dim + d, mass * this->velocity(n)[d]);
+          rank_sums.add(1 + 2 * dim + d, force[d]);
         }
       const dealii::Tensor<1, 3> moment = moment_of<dim>(this->position(n), force);
       for (int d = 0; d < 3; ++d)
-        sums[1 + 3 * dim + d] += moment[d];
+        rank_sums.add(1 + 3 * dim + d, moment[d]);
     }
-  dealii::Utilities::MPI::sum(sums, mesh().communicator(), sums);
+  const auto sums = rank_sums.total(mesh().communicator());
 
   BodySummary<dim> result;
   result.mass = sums[0];

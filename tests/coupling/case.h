@@ -12,13 +12,13 @@ namespace coracle
 {
 template <int dim>
 std::unique_ptr<Coupling<dim>>
-make_coupling(const std::string &text)
+make_coupling(const std::string &text, MPI_Comm comm = MPI_COMM_WORLD)
 {
   Declaration declaration;
   Coupling<dim>::declare(declaration);
   ParameterFile file(declaration);
   file.read_text(text);
-  return std::make_unique<Coupling<dim>>(file.parameters(), MPI_COMM_WORLD);
+  return std::make_unique<Coupling<dim>>(file.parameters(), comm);
 }
 
 /// Mass, mass times position, momentum of the first body of material points, on all ranks.

@@ -187,6 +187,7 @@ private:
                            const std::vector<PointSet<dim>>          &points,
                            const typename ContinuousCheck<dim>::Ends &ends);
   void        sum_up(const std::vector<RigidUnknown<dim>> &rigid);
+  void        sum_up_blocks(const std::vector<RigidUnknown<dim>> &rigid);
 
   ContactOptions       options;
   MPI_Comm             communicator;

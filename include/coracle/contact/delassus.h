@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/contact/block_rows.h>
 #include <coracle/contact/contact.h>
 #include <coracle/contact/lanes.h>
 #include <coracle/contact/rows.h>
@@ -76,6 +77,9 @@ public:
               const std::vector<Unknown<dim>>      &unknowns,
               const std::vector<RigidUnknown<dim>> &rigid);
 
+  /// The same for contacts in blocks, instead of those of each rank; the blocks must stay.
+  void reinit(const std::vector<Contact<dim>> &contacts, BlockRows<dim> &blocks);
+
   const std::vector<Row> &rows() const { return list; }
   /// Of each contact.
   const Sliding &sliding(const std::size_t contact) const { return slidings[contact]; }
@@ -135,7 +139,18 @@ private:
                                       const Vector        &impulse,
                                       LaneVelocities<dim> &v) const;
   void                    take_entries(const Rows &rows);
-  void share_rigid_bodies(const Rows &rows, const std::vector<RigidUnknown<dim>> &rigid);
+  void                    set_rows(const std::vector<Contact<dim>>      &contacts,
+                                   const Rows                           &rows,
+                                   const std::vector<Unknown<dim>>      &unknowns,
+                                   const std::vector<RigidUnknown<dim>> &rigid);
+  void                    count_ranks_of_bodies(const Rows &rows, const unsigned int n_bodies);
+  void                    count_blocks_of_bodies();
+  void                    share_rigid_bodies(const std::vector<RigidUnknown<dim>> &rigid);
+  void         synchronise_blocks(LaneVelocities<dim> &v, const LaneVelocities<dim> &before);
+  unsigned int multiplicity(const unsigned int unknown) const
+  {
+    return blocks != nullptr ? blocks->copies.multiplicity(unknown) : shared.multiplicity(unknown);
+  }
   void prepare(Row &row, Sliding &slide, TrueMasses &masses) const;
   /// The largest eigenvalue of the tangential block, so that updates do not overshoot [1/kg].
   double tangential_inverse_mass(const Row &row, const bool split) const;
@@ -144,6 +159,7 @@ private:
 
   MPI_Comm                  communicator;
   SharedUnknowns<dim>       shared;
+  BlockRows<dim>           *blocks = nullptr;
   std::vector<Row>          list;
   std::vector<Sliding>      slidings;
   std::vector<TrueMasses>   true_masses;

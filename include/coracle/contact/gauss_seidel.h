@@ -48,7 +48,10 @@ class GaussSeidel
 public:
   using Vector = dealii::Tensor<1, dim>;
 
-  explicit GaussSeidel(MPI_Comm communicator, const bool accelerate = true);
+  /// @param in_blocks contacts come in blocks (BlockRows), and results do not depend on the ranks
+  explicit GaussSeidel(MPI_Comm   communicator,
+                       const bool accelerate = true,
+                       const bool in_blocks  = false);
 
   /**
    * Collective.
@@ -85,7 +88,7 @@ private:
                   const LaneVelocities<dim> &v) const;
 
   MPI_Comm            communicator;
-  bool                accelerate;
+  bool                accelerate, in_blocks;
   Momentum<dim>       momentum;
   LaneVelocities<dim> before;
   /// Accumulated impulses P.

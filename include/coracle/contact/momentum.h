@@ -33,6 +33,10 @@ public:
   /// (start - P) . (P - P_last) of this rank's contacts [J]: positive when the iteration that
   /// began at `start` has turned back.
   double turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>> &impulses) const;
+  /// The same of all ranks' contacts, in an exact sum. Collective.
+  double turn_of_all(const Delassus<dim>           &delassus,
+                     const std::vector<Lanes<dim>> &impulses,
+                     MPI_Comm                       communicator) const;
 
   /**
    * After an iteration: impulses and velocities move on to where the next one starts.

@@ -76,9 +76,12 @@ struct ContactOptions
   /// Do the surfaces of structures meet each other?
   bool structure_contact = true;
 
+  /// Results are the same on any number of ranks, bit by bit; see BlockRows.
+  bool reproducible = false;
+
   static void declare(Declaration &section);
 
   ContactOptions() = default;
-  explicit ContactOptions(const Parameters &section);
+  explicit ContactOptions(const Parameters &section, const bool reproducible = false);
 };
 } // namespace coracle::contact

@@ -68,6 +68,10 @@ public:
              const std::vector<RigidUnknown<dim>>            &rigid,
              const double                                     dt);
 
+  /// Before solve(), for results that do not depend on the ranks: the block of each contact.
+  void set_blocks(const std::vector<std::uint64_t> &block_of_contact) { block = block_of_contact; }
+  BlockRows<dim> &blocks() { return in_blocks; }
+
   const Impulses<dim> &impulses() const { return result; }
   const SolverReport  &report() const { return statistics; }
 
@@ -90,16 +94,18 @@ private:
   /// What the solve has left and done: worst violation of the targets, and work.
   void measure_result(const std::vector<Contact<dim>> &contacts);
 
-  ContactOptions      options;
-  MPI_Comm            communicator;
-  Delassus<dim>       delassus;
-  GaussSeidel<dim>    gauss_seidel;
-  WarmStart<dim>      warm_start;
-  LaneVelocities<dim> velocity, displacement_rate;
-  std::vector<double> target;
-  std::vector<bool>   active;
-  Impulses<dim>       result;
-  SolverReport        statistics;
-  double              old_dt = 0;
+  ContactOptions             options;
+  MPI_Comm                   communicator;
+  BlockRows<dim>             in_blocks;
+  std::vector<std::uint64_t> block;
+  Delassus<dim>              delassus;
+  GaussSeidel<dim>           gauss_seidel;
+  WarmStart<dim>             warm_start;
+  LaneVelocities<dim>        velocity, displacement_rate;
+  std::vector<double>        target, work;
+  std::vector<bool>          active;
+  Impulses<dim>              result;
+  SolverReport               statistics;
+  double                     old_dt = 0;
 };
 } // namespace coracle::contact

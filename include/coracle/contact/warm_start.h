@@ -23,8 +23,11 @@ public:
     std::uint64_t point, facet;
   };
 
-  /// Impulse that this contact had, zero if it is new.
-  dealii::Tensor<1, dim> find(const Key &key) const;
+  /// Impulses that these contacts had on this rank, zero if they are new here.
+  std::vector<dealii::Tensor<1, dim>> find(const std::vector<Key> &keys) const;
+  /// Those that they had on any rank. Collective.
+  std::vector<dealii::Tensor<1, dim>> find_on_all_ranks(const std::vector<Key> &keys,
+                                                        MPI_Comm                communicator) const;
 
   /// Forget the old impulses and keep these.
   void store(const std::vector<Key> &keys, const std::vector<dealii::Tensor<1, dim>> &impulses);
@@ -39,7 +42,9 @@ private:
     dealii::Tensor<1, dim> impulse;
     bool                   used = false;
   };
-  std::size_t       place(const Key &key) const;
+  std::size_t            place(const Key &key) const;
+  dealii::Tensor<1, dim> find(const Key &key) const;
+
   std::vector<Slot> slots;
 };
 } // namespace coracle::contact

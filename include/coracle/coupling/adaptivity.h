@@ -73,5 +73,7 @@ private:
   ParticleRefinement<dim> refinement;
   unsigned int            interval, balance_interval;
   double                  interval_in_cells, largest_imbalance, contact_weight;
+  /// Results do not depend on the ranks.
+  bool reproducible;
 };
 } // namespace coracle

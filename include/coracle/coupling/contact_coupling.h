@@ -107,6 +107,7 @@ private:
   const contact::InitialOverlap initial_overlap;
   MPI_Comm                      comm;
   const contact::Method         method;
+  const bool                    reproducible;
   GridContact<dim>              on_grid;
   contact::ContactReport        report_with_grid;
   contact::ContactSystem<dim>   system;

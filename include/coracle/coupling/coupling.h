@@ -14,6 +14,8 @@ struct CouplingOptions
   double                 safety_factor, largest_step, smallest_share;
   bool                   split_fields;
   dealii::Tensor<1, dim> gravity;
+  /// Results are the same on any number of ranks, bit by bit.
+  bool reproducible;
 
   static void            declare(Declaration &root);
   static CouplingOptions read(const Parameters &root);

@@ -56,7 +56,7 @@ public:
   void find_rates(const Octree<dim> &octree);
 
   /// Velocities times exp(-c dt) while damping is on [J lost].
-  double damp(const double time, const double dt);
+  double damp(const double time, const double dt, MPI_Comm comm);
 
   MaterialPoints<dim>    points;
   const MaterialVariant &material;

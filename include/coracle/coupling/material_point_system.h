@@ -41,6 +41,10 @@ public:
   /// Particles with shape functions of their own in this step: those that a sheet of this surface
   /// cuts off from nodes, and those that touch a surface. Collective.
   void cut(const contact::Surface<dim> &surface);
+  /// Results do not depend on the ranks from now on, bit by bit: particles are sorted in every
+  /// step, and sums on nodes are exact. Before the first step.
+  void make_reproducible();
+
   /// Mass, momentum, internal and external force to the nodes of each field.
   void gather(const double time, const double dt);
   /// Velocities of nodes without contact.
@@ -61,8 +65,8 @@ public:
   void octree_changed();
   /// Particles have come and gone: they go to their owners and are sorted. Collective.
   void redistribute_particles();
-  /// Kinetic energy that splitting and merging took becomes internal [J].
-  void book_split_merge(MaterialPointBody<dim> &body, const double lost);
+  /// Kinetic energy that splitting and merging took on this rank becomes internal [J]. Collective.
+  void book_split_merge(MaterialPointBody<dim> &body, const ExactSum &lost);
 
   /// The first thing that went wrong on this rank in gather, update_stresses or locate. They go on
   /// to their end, because other ranks wait for this one; the step looks here afterwards.
@@ -104,10 +108,20 @@ private:
                                  const unsigned int      place,
                                  const double            time,
                                  const double            dt);
+  /// For sums on nodes that are to be reproducible: of what particles have, and of what they take
+  /// from nodes that have moved. Collective.
+  void bound_sums(const double time, const bool after_nodes_moved);
+  /// What all ranks have together, on rank 0, and zero elsewhere. Collective.
+  double on_first_rank(const ExactSum &sum) const;
+  double kinetic_energy(const MaterialPointBody<dim> &body) const
+  {
+    return on_first_rank(body.points.exact_kinetic_energy());
+  }
   void add_body_forces(MaterialPointBody<dim> &body, const double time, const double dt);
 
   FieldSplit<dim> sides;
   Books           energy;
+  bool            reproducible     = false;
   unsigned int    steps_since_sort = 0;
   bool            renumbered       = true;
 };

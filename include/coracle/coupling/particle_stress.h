@@ -20,6 +20,8 @@ struct StressSweep
 {
   /// Stress power times step, with the mean of old and new stress [J].
   double work = 0;
+  /// The same, exact, if the options ask for it.
+  ExactSum exact_work;
   /// Kinetic energy of the particles [J].
   double kinetic = 0;
   /// Largest (wave speed + particle speed) / cell size [1/s]; its inverse bounds the step.
@@ -40,6 +42,8 @@ struct StressOptions
   double volume_smoothing = 0;
   /// [s]
   double dt = 0;
+  /// Is an exact sum of work wanted?
+  bool exact_work = false;
 };
 
 /**

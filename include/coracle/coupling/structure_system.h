@@ -20,9 +20,11 @@ class StructureSystem
 {
 public:
   /// Section `Bodies`. Collective.
+  /// @param reproducible sums on nodes do not depend on the ranks, bit by bit
   StructureSystem(const Parameters             &root,
                   const MaterialLibrary        &materials,
                   const dealii::Tensor<1, dim> &gravity,
+                  const bool                    reproducible,
                   MPI_Comm                      comm);
 
   /// Over all ranks [s].
@@ -114,6 +116,7 @@ private:
   void for_each_surface(const Action &action);
 
   MPI_Comm                            comm;
+  const bool                          reproducible;
   contact::Surface<dim>               surface;
   std::vector<unsigned int>           first_node, body_of_surface;
   unsigned int                        sheets = 0;

@@ -135,6 +135,21 @@ public:
           }
       }
   }
+
+  void give_to(NodalField<dim> &field, const std::array<unsigned int, (1 << dim)> &nodes) const
+  {
+    if (!field.reproducible())
+      return give_to(field.gathered(), nodes);
+    for (int c = 0; c < (1 << dim); ++c)
+      {
+        field.give(nodes[c], Gathered::mass, mass[c]);
+        for (int d = 0; d < dim; ++d)
+          {
+            field.give(nodes[c], Gathered::momentum + d, momentum[d][c]);
+            field.give(nodes[c], Gathered::force + d, force[d][c]);
+          }
+      }
+  }
 };
 
 /**

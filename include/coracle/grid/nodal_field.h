@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/exact_sum.h>
 #include <coracle/grid/box_boundary.h>
 #include <coracle/grid/node_split.h>
 
@@ -45,7 +46,40 @@ public:
   /// The octree has new nodes: all is zero. Between steps.
   void reinit();
 
+  /**
+   * What nodes gather does not depend on the order from now on, nor on the ranks, bit by bit: for
+   * each of the bounds' kinds two sums are kept, of summands rounded so that sums are exact
+   * (SumGrid), and of what was rounded off.
+   */
+  void make_reproducible() { is_reproducible = true; }
+  bool reproducible() const { return is_reproducible; }
+
+  /// No summand is larger on any rank; `number` bounds how many there may be at a node.
+  struct Bounds
+  {
+    double mass = 0, momentum = 0, force = 0, number = 1;
+  };
+  /// Before nodes gather, if that is to be reproducible: the same on all ranks and on any number of
+  /// them.
+  void bound(const Bounds &bounds);
+  /// Largest component of what nodes on this rank have as velocity and change of it [m/s].
+  double largest_velocity() const;
+
+  /// Adds to what a node has gathered.
+  void give(const unsigned int node, const unsigned int place, const double value)
+  {
+    if (!is_reproducible)
+      {
+        records[node][place] += value;
+        return;
+      }
+    const double high = high_grid[place].round(value);
+    records[node][place] += high;
+    rests[node][place] += low_grid[place].round(value - high);
+  }
+
   NodeRecords       &gathered() { return records; }
+  const NodeRecords &gathered() const { return records; }
   const NodeRecords &motion() const { return motions; }
 
   /// For a new step; takes the records that the split has now.
@@ -62,6 +96,8 @@ public:
     double given    = 0; ///< m v^2/2 at the end, as particles find it
   };
   const Energies &energies() const { return books; }
+  /// If sums are to be reproducible: rank 0 has all of them, others nothing. Collective.
+  void sum_energies();
 
   /// v = p/m; v += dt (f/m + g); conditions of the box; owned nodes, then everybody's copies.
   void predict(const double dt, const dealii::Tensor<1, dim> &gravity);
@@ -125,6 +161,8 @@ private:
       if (split->is_owned(i))
         directions(i);
   }
+  void sum_rests();
+  void book(const Energies &of_a_node);
   void sum_to_owners(NodeRecords &r) const;
   void update_ghosts(NodeRecords &r) const;
 
@@ -135,14 +173,18 @@ private:
   void condense(NodeRecords &r) const;
   void interpolate_hanging(NodeRecords &r) const;
 
-  const Octree<dim>                  &octree;
-  const BoxBoundary<dim>             &boundary;
-  const NodeSplit<dim>               *split;
-  NodeRecords                         records, motions, impulses;
+  const Octree<dim>      &octree;
+  const BoxBoundary<dim> &boundary;
+  const NodeSplit<dim>   *split;
+  bool                    is_reproducible = false;
+  /// Of the places in a gathered record.
+  std::array<SumGrid, 8>              high_grid, low_grid;
+  NodeRecords                         records, rests, motions, impulses;
   std::vector<unsigned int>           touched;
   std::vector<dealii::Tensor<1, dim>> shifts;
   std::vector<unsigned char>          shifted;
   std::vector<unsigned int>           shifted_nodes;
   Energies                            books;
+  RankSums                            exact_books{5, true};
 };
 } // namespace coracle

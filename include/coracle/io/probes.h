@@ -111,7 +111,10 @@ public:
 
   static void add_columns(const ProbeDescription<dim> &description, Statistics &statistics);
   /// Collective.
-  void set_columns(const ParticleView &particles, Statistics &statistics) const;
+  /// @param reproducible sums do not depend on the ranks, bit by bit
+  void set_columns(const ParticleView &particles,
+                   Statistics         &statistics,
+                   const bool          reproducible = false) const;
 
 private:
   ProbeDescription<dim> description;

@@ -3,6 +3,7 @@
 
 #include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
+#include <coracle/base/exact_sum.h>
 #include <coracle/particles/cut_points.h>
 #include <coracle/particles/layout.h>
 #include <coracle/particles/leaf_means.h>
@@ -106,6 +107,10 @@ public:
   /// Since the set-up, on this rank.
   ParticleLedger ledger;
 
+  /// Results are not to depend on the ranks, bit by bit: particles of a cell are sorted by their
+  /// ids.
+  bool reproducible = false;
+
   /// Working space of the sweeps over cells.
   LeafMeans means;
 
@@ -113,6 +118,7 @@ public:
   void serialize(Archive &archive);
 
   double      kinetic_energy() const;
+  ExactSum    exact_kinetic_energy() const;
   double      mass() const;
   std::size_t memory_consumption() const
   {

@@ -65,7 +65,8 @@ public:
   bool merge(const std::vector<std::vector<unsigned int>> &groups);
 
   /// Kinetic energy lost so far by what this object did [J].
-  double lost_energy() const { return lost; }
+  double          lost_energy() const { return lost.value(); }
+  const ExactSum &lost_energy_sum() const { return lost; }
 
 private:
   using Layout = ParticleLayout<dim>;
@@ -91,6 +92,6 @@ private:
   void                   store(const Merged &merged, const std::vector<unsigned int> &group);
 
   MaterialPoints<dim> &points;
-  double               lost = 0;
+  ExactSum             lost;
 };
 } // namespace coracle

@@ -4,6 +4,7 @@
 #include <deal.II/base/function.h>
 
 #include <coracle/base/columns.h>
+#include <coracle/base/exact_sum.h>
 #include <coracle/base/parameters.h>
 #include <coracle/mesh/structure_mesh.h>
 
@@ -29,22 +30,18 @@ public:
   /// Inverse mass of owned nodes becomes 0 where motion is prescribed.
   void constrain(Columns &nodes) const;
 
-  /// Work in setting new velocities: on the material, and of the supports [J].
-  struct Work
-  {
-    double strain = 0, external = 0;
-  };
-
   /**
    * Velocities of the prescribed directions for the step from `time` to time + dt: a velocity
    * function at its middle; for displacements what leads to the exact position at its end.
    *
    * @param duration time between the old and the new velocities [s]
+   * @param work     of setting new velocities is added: 0: on the material, 1: of the supports [J]
    */
-  Work prescribe_velocities(Columns     &nodes,
+  void prescribe_velocities(Columns     &nodes,
                             const double time,
                             const double dt,
-                            const double duration) const;
+                            const double duration,
+                            RankSums    &work) const;
 
 private:
   struct Condition

@@ -5,6 +5,7 @@
 
 #include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
+#include <coracle/base/exact_sum.h>
 #include <coracle/material/library.h>
 #include <coracle/mesh/structure_mesh.h>
 #include <coracle/structure/node_columns.h>
@@ -51,8 +52,15 @@ public:
            const Integration         integration,
            const double              hourglass_coefficient);
 
-  /// Lumped mass [kg] of all elements on their nodes, added to the column; no sum over ranks.
-  void add_mass(double *nodal_mass, const StructureMesh<dim> &mesh) const;
+  /// Forces are rounded from now on so that their sums on the nodes do not depend on the order and
+  /// on the ranks; update() is then collective.
+  void make_reproducible(MPI_Comm communicator);
+
+  /// Lumped mass [kg] of all elements on their nodes, each share rounded by the grid and added to
+  /// the column; no sum over ranks.
+  void add_mass(double *nodal_mass, const StructureMesh<dim> &mesh, const SumGrid &grid) const;
+  /// Of one element on this rank [kg].
+  double largest_mass() const;
 
   /**
    * Stress and internal force at the end of a step from position and
@@ -76,8 +84,8 @@ public:
 
   /// Cauchy stress, mean over the points: xx, yy, zz, xy (, yz, xz) [Pa].
   Symmetric<dim, double> stress(const unsigned int element) const;
-  /// Sum over this rank's elements [J].
-  double hourglass_energy() const;
+  /// Hourglass energy of this rank's elements is added [J].
+  void add_hourglass_energy(RankSums &sums, const unsigned int place) const;
 
   /// What a kernel works on: nodes of each pack, [node][lane], and the columns of its elements.
   struct Data
@@ -86,9 +94,13 @@ public:
     unsigned int              n_elements = 0, n_packs = 0;
     /// mass, reference volume, hourglass energy, hourglass forces, then stress and history of each
     /// point.
-    Columns              columns;
-    unsigned int         n_history         = 0;
-    double               hourglass_modulus = 0;
+    Columns      columns;
+    unsigned int n_history         = 0;
+    double       hourglass_modulus = 0;
+    /// Forces of the elements on their nodes, [pack][direction][node][lane], if they are wanted
+    /// apart instead of summed [N].
+    bool                 apart = false;
+    std::vector<double>  forces;
     static constexpr int mass = 0, volume = 1, energy = 2, hourglass = 3;
     static constexpr int first_stress = 3 + dim * (dim == 2 ? 1 : 4);
 
@@ -105,6 +117,7 @@ public:
 private:
   void              allocate(const StructureMesh<dim> &mesh);
   void              compute_reference(const StructureMesh<dim> &mesh);
+  void              add_rounded_forces(Columns &nodes) const;
   [[noreturn]] void report_failure(const Columns &nodes) const;
 
   const MaterialVariant material;
@@ -112,6 +125,7 @@ private:
   unsigned int          n_elements = 0;
   Data                  data;
   double                stable_step;
+  MPI_Comm              communicator = MPI_COMM_NULL;
 };
 
 extern template class Elements<2>;

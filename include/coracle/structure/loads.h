@@ -4,6 +4,7 @@
 #include <deal.II/base/function.h>
 
 #include <coracle/base/columns.h>
+#include <coracle/base/exact_sum.h>
 #include <coracle/base/parameters.h>
 #include <coracle/mesh/structure_mesh.h>
 
@@ -27,9 +28,11 @@ public:
 
   /**
    * Add the forces at `time` to the column `external`: what this rank's facets and owned nodes
-   * give, without sums over ranks [N].
+   * give, each rounded by the grid, without sums over ranks [N].
    */
-  void add_forces(Columns &nodes, const double time) const;
+  void add_forces(Columns &nodes, const double time, const SumGrid &grid) const;
+  /// The largest of these, on this rank [N].
+  double largest_force(const Columns &nodes, const double time) const;
 
 private:
   enum class Kind
@@ -48,8 +51,13 @@ private:
   };
 
   Load read(const Parameters &section, const StructureMesh<dim> &mesh) const;
-  void add_facet_forces(const Load &load, Columns &nodes) const;
-  void add_acceleration(const Load &load, Columns &nodes) const;
+  /// Call give(node, direction, force) for each.
+  template <typename Give>
+  void for_each_force(const Columns &nodes, const double time, const Give &give) const;
+  template <typename Give>
+  void for_each_facet_force(const Load &load, const Columns &nodes, const Give &give) const;
+  template <typename Give>
+  void for_each_node_force(const Load &load, const Columns &nodes, const Give &give) const;
 
   std::vector<Load> loads;
   unsigned int      n_owned_nodes;

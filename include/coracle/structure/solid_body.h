@@ -35,11 +35,14 @@ public:
   /// Entries of a body of the kind `solid`.
   static void declare(Declaration &body_section);
 
-  /// @param gravity [m/s^2]; throws UserError. Collective.
+  /// @param gravity [m/s^2]
+  /// @param reproducible sums on nodes do not depend on the ranks, bit by bit
+  /// Throws UserError. Collective.
   SolidBody(const Parameters             &body,
             const MaterialLibrary        &materials,
             const dealii::Tensor<1, dim> &gravity,
-            MPI_Comm                      comm);
+            MPI_Comm                      comm,
+            const bool                    reproducible = false);
 
   /// Of this rank's elements as they are now, infinite without any [s]. Multiply by a safety
   /// factor.
@@ -95,12 +98,16 @@ private:
   void   find_contact_nodes();
   void   kick(const double duration, const double dt);
   double damping_at(const double time) const;
+  /// What rounds summands of at most this size on any rank, if sums are to be reproducible.
+  SumGrid sum_grid(const double largest_here) const;
+  /// Rounds columns whose sums on nodes follow.
+  void round(const unsigned int first_column, const unsigned int n_columns);
   /// Forces of hanging nodes go to their parents.
   void condense(const unsigned int first_column, const unsigned int n_columns);
   /// Ghosts as their owners, then hanging nodes as the mean of their parents.
   void distribute(const unsigned int first_column);
 
-  const bool              touches_itself;
+  const bool              touches_itself, reproducible;
   Elements<dim>           elements;
   BoundaryConditions<dim> boundary_conditions;
   Loads<dim>              loads;

@@ -23,8 +23,13 @@ update_elements(const Material               &material,
         const NodalVectors<dim, Pack8> force = step(pack);
         const unsigned int             n_lanes =
           std::min<unsigned int>(pack_size, data.n_elements - pack * pack_size);
-        scatter_minus<dim>(
-          force, n_lanes, &data.connectivity[pack * stride], NodeColumns<dim>::internal, nodes);
+        if (data.apart)
+          for (int d = 0; d < dim; ++d)
+            for (int n = 0; n < nodes_per_element<dim>; ++n)
+              store(&data.forces[(pack * dim + d) * stride + n * pack_size], force[d][n]);
+        else
+          scatter_minus<dim>(
+            force, n_lanes, &data.connectivity[pack * stride], NodeColumns<dim>::internal, nodes);
       }
   };
   if (full_integration)

@@ -200,6 +200,14 @@ Coupling<dim>::choose_time_step() const
 
 template <int dim>
 void
+Coupling<dim>::cut_points()
+{
+  const contact::Surface<dim> no_sheets;
+  points.cut(options.split_fields ? structure.publish_surface() : no_sheets);
+}
+
+template <int dim>
+void
 Coupling<dim>::advance(const double end_time)
 {
   double dt = timed("time step", [&] { return choose_time_step(); });
@@ -209,9 +217,7 @@ Coupling<dim>::advance(const double end_time)
   dt                = left <= dt ? left : std::min(dt, 0.5 * left);
 
   if (structure.n_bodies() > 0)
-    timed("points at surfaces", [&] {
-      points.cut(options.split_fields ? structure.publish_surface() : contact::Surface<dim>());
-    });
+    timed("points at surfaces", [&] { cut_points(); });
   timed("particles to grid", [&] {
     points.gather(current_time, dt);
     timed.count("particle", points.n_particles());

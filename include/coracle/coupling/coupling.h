@@ -67,6 +67,8 @@ private:
   /// Of the structure, for the points.
   MetSurfaces met_surfaces(const Parameters &root) const;
   void        share_out();
+  /// Shape functions of particles at surfaces, for this step.
+  void cut_points();
   /// A step far below the first one is a RunFailure that says what asks for it.
   void check_time_step(const double dt);
   /// Who asks for the step. Collective.

@@ -27,30 +27,6 @@ find_needs(const MaterialVariant &material, const Parameters &body, const MetSur
   needs.n_sheets = met.n_sheets;
   return needs;
 }
-
-template <int dim>
-void
-check_inside_box(const Parameters &body, const dealii::BoundingBox<dim> &box)
-{
-  const dealii::BoundingBox<dim> extent = read_shape<dim>(body)->bounding_box();
-  for (unsigned int d = 0; d < dim; ++d)
-    {
-      const double tolerance = 1e-9 * box.side_length(d);
-      if (extent.lower_bound(d) >= box.lower_bound(d) - tolerance &&
-          extent.upper_bound(d) <= box.upper_bound(d) + tolerance)
-        continue;
-      std::ostringstream found;
-      found << "'" << body.name() << "' reaches from " << extent.lower_bound(d) << " m to "
-            << extent.upper_bound(d) << " m in direction "
-            << "xyz"[d] << ", the grid's box from " << box.lower_bound(d) << " m to "
-            << box.upper_bound(d) << " m";
-      throw body.error(
-        "Shape",
-        "a body lies outside the box",
-        found.str(),
-        "move or shrink the body, or enlarge Grid/Lower corner and Grid/Upper corner");
-    }
-}
 } // namespace
 
 template <int dim>

@@ -156,6 +156,7 @@ MeshlessSystem<dim>::generate(const Parameters     &body,
                               const Octree<dim>    &octree,
                               meshless::Fluid<dim> &fluid)
 {
+  check_inside_box(body, octree.box());
   const auto                             shape    = read_shape<dim>(body);
   const dealii::BoundingBox<dim>         box      = shape->bounding_box();
   const std::vector<double>              constant = body.list("Initial velocity");

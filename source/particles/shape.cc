@@ -6,6 +6,8 @@
 #include <coracle/particles/shape_polygon.h>
 #include <coracle/particles/shape_surface.h>
 
+#include <sstream>
+
 namespace coracle
 {
 void
@@ -41,6 +43,32 @@ read_shape(const Parameters &body)
   return std::make_unique<SurfaceShape<dim>>(body);
 }
 
+template <int dim>
+void
+check_inside_box(const Parameters &body, const dealii::BoundingBox<dim> &box)
+{
+  const dealii::BoundingBox<dim> extent = read_shape<dim>(body)->bounding_box();
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      const double tolerance = 1e-9 * box.side_length(d);
+      if (extent.lower_bound(d) >= box.lower_bound(d) - tolerance &&
+          extent.upper_bound(d) <= box.upper_bound(d) + tolerance)
+        continue;
+      std::ostringstream found;
+      found << "'" << body.name() << "' reaches from " << extent.lower_bound(d) << " m to "
+            << extent.upper_bound(d) << " m in direction "
+            << "xyz"[d] << ", the grid's box from " << box.lower_bound(d) << " m to "
+            << box.upper_bound(d) << " m";
+      throw body.error(
+        "Shape",
+        "a body lies outside the box",
+        found.str(),
+        "move or shrink the body, or enlarge Grid/Lower corner and Grid/Upper corner");
+    }
+}
+
 template std::unique_ptr<Shape<2>> read_shape<2>(const Parameters &);
 template std::unique_ptr<Shape<3>> read_shape<3>(const Parameters &);
+template void check_inside_box(const Parameters &, const dealii::BoundingBox<2> &);
+template void check_inside_box(const Parameters &, const dealii::BoundingBox<3> &);
 } // namespace coracle

@@ -54,4 +54,8 @@ void declare_shape(Declaration &body);
  */
 template <int dim>
 std::unique_ptr<Shape<dim>> read_shape(const Parameters &body);
+
+/// A UserError if the shape of a body reaches out of the box.
+template <int dim>
+void check_inside_box(const Parameters &body, const dealii::BoundingBox<dim> &box);
 } // namespace coracle

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/coupling/initial_velocity.h>
 #include <coracle/coupling/material_point_body.h>
 #include <coracle/grid/locate.h>
 #include <coracle/particles/generate.h>
@@ -188,26 +189,17 @@ MaterialPointBody<dim>::generate(const Parameters &body, const Octree<dim> &octr
                        std::to_string(octree.smallest_cell_size()) + " m",
                      "choose a smaller spacing, Shape functions = linear, or larger cells");
 
-  const std::vector<double>              constant = body.list("Initial velocity");
-  std::unique_ptr<dealii::Function<dim>> varying;
-  if (body.is_set("Initial velocity function"))
-    varying = body.function<dim>("Initial velocity function", dim);
-  if (!constant.empty() && constant.size() != dim)
-    throw body.error("Initial velocity",
-                     "a velocity has the wrong number of components",
-                     std::to_string(constant.size()) + " components",
-                     "give " + std::to_string(dim) + ", one for each direction");
+  const InitialVelocity<dim> velocity(body);
 
   points.columns.resize(made.positions.size());
   for (std::size_t row = 0; row < made.positions.size(); ++row)
     {
+      const dealii::Tensor<1, dim> v = velocity(made.positions[row]);
       for (int d = 0; d < dim; ++d)
         {
           points.column(Layout::position + d)[row]      = made.positions[row][d];
           points.column(Layout::next_position + d)[row] = made.positions[row][d];
-          points.column(Layout::velocity + d)[row]      = varying
-                                                            ? varying->value(made.positions[row], d)
-                                                            : (constant.empty() ? 0. : constant[d]);
+          points.column(Layout::velocity + d)[row]      = v[d];
         }
       points.column(Layout::mass)[row]    = density * made.volume;
       points.column(Layout::density)[row] = density;

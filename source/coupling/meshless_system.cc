@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/coupling/initial_velocity.h>
 #include <coracle/coupling/meshless_system.h>
 #include <coracle/particles/shape.h>
 
@@ -157,19 +158,11 @@ MeshlessSystem<dim>::generate(const Parameters     &body,
                               meshless::Fluid<dim> &fluid)
 {
   check_inside_box(body, octree.box());
-  const auto                             shape    = read_shape<dim>(body);
-  const dealii::BoundingBox<dim>         box      = shape->bounding_box();
-  const std::vector<double>              constant = body.list("Initial velocity");
-  std::unique_ptr<dealii::Function<dim>> varying;
-  if (body.is_set("Initial velocity function"))
-    varying = body.function<dim>("Initial velocity function", dim);
-  if (!constant.empty() && constant.size() != dim)
-    throw body.error("Initial velocity",
-                     "a velocity has the wrong number of components",
-                     std::to_string(constant.size()) + " components",
-                     "give " + std::to_string(dim) + ", one for each direction");
-  const ClosedLattice<dim> lattice(box, fluid.options.spacing);
-  std::uint64_t            n = 0;
+  const auto                     shape = read_shape<dim>(body);
+  const dealii::BoundingBox<dim> box   = shape->bounding_box();
+  const InitialVelocity<dim>     velocity(body);
+  const ClosedLattice<dim>       lattice(box, fluid.options.spacing);
+  std::uint64_t                  n = 0;
   for (std::uint64_t id = 0; id < lattice.size(); ++id)
     {
       const dealii::Point<dim> x = lattice.point(id);
@@ -178,10 +171,7 @@ MeshlessSystem<dim>::generate(const Parameters     &body,
       const int                leaf  = octree.find(x);
       if (leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()) || !shape->contains(inner))
         continue;
-      dealii::Tensor<1, dim> v;
-      for (unsigned int d = 0; d < dim; ++d)
-        v[d] = varying ? varying->value(x, d) : (constant.empty() ? 0. : constant[d]);
-      fluid.add_point(x, v, id);
+      fluid.add_point(x, velocity(x), id);
       ++n;
     }
   n                    = mpi::sum(n, octree.triangulation.get_communicator());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/base/archive.h>
+#include <coracle/base/exceptions.h>
 
 #include <map>
 #include <string>
@@ -34,8 +35,11 @@ public:
   std::vector<char>
   get(const unsigned int part, const std::string &name, Block &block) const override
   {
-    block = parts[part].at(name).block;
-    return parts[part].at(name).bytes;
+    const auto found = parts[part].find(name);
+    if (found == parts[part].end())
+      throw RunFailure("a checkpoint does not fit this case", name + " is not there", "");
+    block = found->second.block;
+    return found->second.bytes;
   }
   bool has(const unsigned int part, const std::string &name) const override
   {

@@ -48,7 +48,7 @@ for ranks in (1, 2):
     sizes = [-(-path.stat().st_size // PAGE) * PAGE for path in newest.iterdir()]
     one = sum(sizes)
     # No checkpoint at all; one and part of the next; two and part of the next, down to its last file.
-    for share in (0.02, 0.5, 0.99, 1.3, 1.7, 2.5, 3 - PAGE / one, 3.2):
+    for share in (0.02, 0.5, 0.99, 1.3, 1.7, 2.5, 3 - 2.5 * PAGE / one, 3.2):
         directory = test.new_directory(CASE)
         size = int(share * one) // PAGE * PAGE + PAGE
         copy = directory / "copy"

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include <unistd.h>
@@ -41,6 +42,8 @@ start()
   {
     Session()
     {
+      // Which has to outlive this.
+      place();
       int    argc   = 1;
       char   name[] = "fuzz", *argv[] = {name, nullptr};
       char **arguments = argv;

@@ -102,13 +102,10 @@ read_mesh_file(const std::string &file_name)
     throw FileError(file_name + ": the end of its name is none of .msh, .vtk, .inp, .ucd");
 
   for (const MeshFile::Element &element : mesh.elements)
-    {
-      auto       points = element.points;
-      const auto end    = points.begin() + MeshFile::n_points(element.kind);
-      std::sort(points.begin(), end);
-      if (std::adjacent_find(points.begin(), end) != end)
-        mesh.fail(element, "an element has a point twice");
-    }
+    for (unsigned int p = 0; p < MeshFile::n_points(element.kind); ++p)
+      for (unsigned int q = 0; q < p; ++q)
+        if (element.points[p] == element.points[q])
+          mesh.fail(element, "an element has a point twice");
   return mesh;
 }
 } // namespace coracle

@@ -102,7 +102,9 @@ Gmsh::read()
 void
 Gmsh::read_format()
 {
-  format = static_cast<int>(10 * in.real("version") + 0.5);
+  const double version = in.real("version");
+  if (version > 0 && version < 10)
+    format = static_cast<int>(10 * version + 0.5);
   if ((format < 20 || format > 22) && format != 40 && format != 41)
     in.fail("a version of gmsh's format that is not 1, 2 to 2.2, 4 or 4.1");
   if (in.integer("type of file") != 0)

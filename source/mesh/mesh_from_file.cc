@@ -189,7 +189,7 @@ check_cells(const MeshFile &file, const std::vector<Element> &cells)
     {
       sorted.emplace_back(cell.points, &cell);
       auto &points = sorted.back().first;
-      std::sort(points.begin(), points.begin() + MeshFile::n_points(cell.kind));
+      std::sort(points.begin(), points.end());
     }
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto &a, const auto &b) {
     return a.first < b.first;

@@ -113,6 +113,7 @@ damaged_gmsh()
   refused("no format", ".msh", "$Nodes\n");
   refused("binary", ".msh", "$MeshFormat\n2.2 1 8\n");
   refused("version", ".msh", "$MeshFormat\n3 0 8\n");
+  refused("huge version", ".msh", "$MeshFormat\n4294967296 0 8\n");
   refused("names without end", ".msh", msh2 + "$PhysicalNames\n1\n");
   refused("no section", ".msh", msh2 + "6\n");
   refused("cut off", ".msh", msh2 + "$Nodes\n6\n1 0 0 0\n2 1");

@@ -57,7 +57,8 @@ refused(const std::string &title, const std::string &text)
     }
   catch (const UserError &error)
     {
-      deallog << dim << "-D, " << title << ": " << error.title << " | " << error.found << std::endl;
+      deallog << dim << "-D, " << title << ": " << error.title << " | "
+              << error.found.substr(error.found.rfind('/') + 1) << std::endl;
     }
 }
 
@@ -88,7 +89,7 @@ in_the_plane()
                "$Nodes\n4\n1 0 0 0\n2 1e-200 0 0\n3 1e-200 1e-200 0\n4 0 1e-200 0\n$EndNodes\n" +
                elements("1 3 0 1 2 3 4\n"));
   refused<2>("the same twice", plane + elements(left + "2 3 0 2 5 4 1\n"));
-  refused<2>("folded over", plane + elements(left + "2 3 0 2 5 4 7\n"));
+  refused<2>("an arrow beside a square", plane + elements(left + "2 3 0 2 5 4 7\n"));
   refused<2>("three at an edge", plane + elements(left + right + "3 3 0 2 5 7 3\n"));
   refused<2>("an id inside", plane + elements(left + right + "3 1 1 7 2 5\n"));
   refused<2>("an id beside", plane + elements(left + "3 1 1 7 6 7\n"));

@@ -177,7 +177,10 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
     motion.radius = 0;
   const double travel = motion.travel();
   ++steps_since_change;
-  if (extremes.changed > 0 || used + extremes.movement + travel > reach)
+  // Points that are nodes have moved as these have.
+  const bool   has_nodes = !points.empty() && points.back().body >= 0;
+  const double gone      = std::max(used, has_nodes ? extremes.movement : 0.);
+  if (extremes.changed > 0 || gone + extremes.movement + travel > reach)
     rebuild(owned, points, extremes, travel);
   else
     facets.update(owned);

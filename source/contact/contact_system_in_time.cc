@@ -30,6 +30,13 @@ has_nodes(const std::vector<PointSet<dim>> &points)
   return std::any_of(points.begin(), points.end(), [](const auto &set) { return set.body >= 0; });
 }
 
+/// What rounds displacements whose sums are to be reproducible.
+SumGrid
+sum_grid(const bool reproducible, const double reach)
+{
+  return reproducible ? SumGrid(reach, sum_bits) : SumGrid();
+}
+
 template <int dim>
 unsigned int
 n_rigid_bodies(const Surface<dim> &surface)
@@ -107,7 +114,12 @@ ContactSystem<dim>::limit_travel_of_nodes(const Surface<dim> &owned)
         const int    rigid = owned.bodies[facet.body].rigid_body;
         const double part  = 0.99 * limit / length;
         if (rigid < 0)
-          changes.move(i, (part - 1) * way);
+          {
+            Vector back = (part - 1) * way;
+            for (int d = 0; d < dim; ++d)
+              back[d] = sum_grid(options.reproducible, reach).round(back[d]);
+            changes.move(i, back);
+          }
         else
           changes.rigid_part[rigid] = std::min(changes.rigid_part[rigid], 0.5);
       }

@@ -155,7 +155,7 @@ ContinuousCheck<dim>::respond(const Surface<dim> &surface,
         {
           const bool held    = hold(surface, facet, changes);
           against_prescribed = against_prescribed || !held;
-          helped = helped || held || shorten(surface, node.body, changes.held_part, changes);
+          helped = shorten(surface, node.body, changes.held_part, changes) || held || helped;
         }
       else if (push(surface, node, pair, meeting, pass, changes))
         helped = true;
@@ -170,9 +170,7 @@ ContinuousCheck<dim>::respond(const Surface<dim> &surface,
   if (!pass.holds || !movable)
     return helped;
   // What comes to a node whatever happens must find it gone.
-  if (against_prescribed)
-    go_aside(surface, node, point, pass, changes);
-  else
+  if (!against_prescribed || !go_aside(surface, node, point, pass, changes))
     changes.hold(node.index);
   return true;
 }

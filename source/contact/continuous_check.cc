@@ -320,6 +320,8 @@ ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
                               const Ends                            &ends)
 {
   Report report;
+  if (std::all_of(ends.begin(), ends.end(), [](const auto &end) { return end[0] == nullptr; }))
+    return report;
   find_extents(surface);
   fixed.fill(false);
   auto contact = contacts.begin();

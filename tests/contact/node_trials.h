@@ -190,8 +190,8 @@ NodeScene<dim>::add_body(const dealii::Point<dim> &centre)
                  : which < 0.9 || !bodies.empty() ? Motion::rigid
                                                   : Motion::prescribed);
   body.first  = surface.nodes.size();
-  // Warped quadrilaterals take long to audit: there are few.
-  add_shape(closed, body.motion == Motion::deformable && random.chance(0.9), centre);
+  // Warped quadrilaterals take long to audit.
+  add_shape(closed, body.motion == Motion::deformable, centre);
   body.last   = surface.nodes.size();
   body.centre = centre;
   SurfaceBody description;

@@ -32,11 +32,11 @@ RigidBody<dim>::read_shape(const Parameters &section, MPI_Comm comm)
   const std::string type = section.choice("Type");
   if (std::find(sheet_types.begin(), sheet_types.end(), type) != sheet_types.end())
     {
-      auto       mesh      = std::make_unique<const SheetMesh<dim>>(section, comm);
+      auto       mesh      = std::make_unique<SheetMesh<dim>>(section, comm);
       const auto integrals = sheet_integrals(*mesh);
       return {std::move(mesh), integrals};
     }
-  auto       mesh      = std::make_unique<const StructureMesh<dim>>(section, comm);
+  auto       mesh      = std::make_unique<StructureMesh<dim>>(section, comm);
   const auto integrals = volume_integrals(*mesh);
   return {std::move(mesh), integrals};
 }

@@ -31,6 +31,7 @@ struct Motion
  *   static constexpr const char *name, *description;
  *   static constexpr bool isotropic_stress;            // stress is -p I: a particle keeps only p
  *   static constexpr bool needs_deformation_gradient;
+ *   static constexpr bool remembers_stress;            // the new stress depends on the old one, or on history
  *   static constexpr int  n_history;                   // doubles a point keeps besides the stress
  *   static void declare(Declaration &);
  *   static bool accepts(const Parameters &);   // is this the variant that these entries of the

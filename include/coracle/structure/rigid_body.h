@@ -89,8 +89,8 @@ private:
   /// The mesh that the section `Mesh` describes, and its integrals.
   struct Shape
   {
-    std::unique_ptr<const BodyMesh<dim>> mesh;
-    VolumeIntegrals<dim>                 integrals;
+    std::unique_ptr<BodyMesh<dim>> mesh;
+    VolumeIntegrals<dim>           integrals;
   };
   static Shape read_shape(const Parameters &mesh, MPI_Comm comm);
   RigidBody(const Parameters &body, const Vector &gravity, Shape &&shape);

@@ -70,6 +70,17 @@ public:
   /// only.
   void update_stress(const double dt);
 
+  /**
+   * Between steps: halves elements (see StructureMesh::refine). Nothing moves, and what is new moves
+   * with the elements that it is in; the whole mass and momentum stay, also the angular momentum
+   * where nodes are free; the kinetic energy that this takes goes into the books as strain.
+   * Collective; throws RunFailure, on all ranks.
+   *
+   * @param wanted by element of mesh()
+   * @return has anything changed?
+   */
+  bool refine(const std::vector<bool> &wanted);
+
   void serialize(Archive &archive);
 
   /// Collective sums.
@@ -94,6 +105,26 @@ public:
 private:
   using Node = NodeColumns<dim>;
 
+  /// Momentum, angular momentum about the origin, kinetic energy. Collective.
+  struct Motion
+  {
+    Vector               momentum;
+    dealii::Tensor<1, 3> angular_momentum;
+    double               kinetic = 0;
+  };
+  Motion motion() const;
+  /// All that is made from the mesh.
+  void follow_mesh(const CarriedState<dim> &state);
+  /// Gives the nodes of refined elements the momentum that is missing, as the least change of their
+  /// velocities, a rigid motion.
+  void                restore_motion(const Motion &before, const CarriedState<dim> &state);
+  std::vector<double> rigid_change(const std::vector<unsigned int> &nodes, const Motion &missing);
+
+  StructureMesh<dim> &changing_mesh()
+  {
+    return static_cast<StructureMesh<dim> &>(*this->body_mesh);
+  }
+
   void   set_mass();
   void   find_contact_nodes();
   void   kick(const double duration, const double dt);
@@ -107,6 +138,7 @@ private:
   /// Ghosts as their owners, then hanging nodes as the mean of their parents.
   void distribute(const unsigned int first_column);
 
+  const Parameters        section;
   const bool              touches_itself, reproducible;
   Elements<dim>           elements;
   BoundaryConditions<dim> boundary_conditions;
@@ -118,7 +150,7 @@ private:
   double time = 0, last_dt = 0, kick_duration = 0;
   /// Owned nodes that contact may touch, also through hanging nodes.
   std::vector<unsigned int> contact_nodes;
-  bool                      is_corrected = false;
+  bool                      is_corrected = false, is_met_in_volume = false;
   /// This rank's part of all books but `kinetic` and `hourglass`; strain includes hourglass.
   Energies books;
 };

@@ -68,6 +68,7 @@ StructureMesh<dim>::StructureMesh(const Parameters &section, MPI_Comm comm)
   triangulation.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
   number_nodes();
   refine_region(section);
+  changes = 0;
 }
 
 template <int dim>

@@ -42,11 +42,8 @@ private:
   };
 
   std::size_t row_size() const { return dim + state.nodes.n_columns(); }
-  std::size_t packed_size() const
-  {
-    return n_corners * row_size() + state.elements.n_columns();
-  }
-  void offer(const unsigned int node, const Source source, const double *row);
+  std::size_t packed_size() const { return n_corners * row_size() + state.elements.n_columns(); }
+  void        offer(const unsigned int node, const Source source, const double *row);
   void unpack_child(const unsigned int element, const unsigned int child, const double *parent);
   /// Mean of those corners of an element that the point `place` (0, 1 or 2 along each axis) is
   /// between; the same bits from any element that has them.
@@ -55,8 +52,8 @@ private:
                        double                              *row) const;
   void exchange_offers();
 
-  StructureMesh      &mesh;
-  CarriedState<dim>  &state;
+  StructureMesh     &mesh;
+  CarriedState<dim> &state;
   /// Number of an element by that of its active cell.
   std::vector<unsigned int> element_of_cell;
   /// Position, then the node's row, for each local node of the new mesh.
@@ -67,9 +64,7 @@ private:
 
 template <int dim>
 StructureMesh<dim>::Carrier::Carrier(StructureMesh &mesh, CarriedState<dim> &state)
-  : mesh(mesh)
-  , state(state)
-  , element_of_cell(mesh.triangulation.n_active_cells(), -1)
+  : mesh(mesh), state(state), element_of_cell(mesh.triangulation.n_active_cells(), -1)
 {
   for (unsigned int e = 0; e < mesh.n_elements(); ++e)
     element_of_cell[mesh.active_cell_index[e]] = e;
@@ -113,9 +108,7 @@ StructureMesh<dim>::Carrier::begin_unpacking()
 
 template <int dim>
 void
-StructureMesh<dim>::Carrier::offer(const unsigned int node,
-                                   const Source       source,
-                                   const double      *row)
+StructureMesh<dim>::Carrier::offer(const unsigned int node, const Source source, const double *row)
 {
   if (source >= sources[node])
     return;
@@ -189,11 +182,15 @@ StructureMesh<dim>::Carrier::mean_of_corners(const std::array<unsigned int, dim>
   std::array<double, n_corners> values;
   for (std::size_t c = 0; c < row_size(); ++c)
     {
+      // In ascending order: elements at a face know its corners in orders of their own.
       for (unsigned int i = 0; i < around.size(); ++i)
-        values[i] = corners[around[i] * row_size() + c];
-      // Elements at a face know its corners in orders of their own.
-      if (around.size() > 2)
-        std::sort(values.begin(), values.begin() + around.size());
+        {
+          const double value    = corners[around[i] * row_size() + c];
+          unsigned int place_of = i;
+          for (; place_of > 0 && values[place_of - 1] > value; --place_of)
+            values[place_of] = values[place_of - 1];
+          values[place_of] = value;
+        }
       double sum = values[0];
       for (unsigned int i = 1; i < around.size(); ++i)
         sum += values[i];
@@ -283,11 +280,14 @@ StructureMesh<dim>::refine(const std::vector<bool> &wanted, CarriedState<dim> &s
   triangulation.execute_coarsening_and_refinement();
   number_nodes();
   carrier.begin_unpacking();
-  triangulation.notify_ready_to_unpack(
-    handle,
-    [&carrier](const auto &cell, const typename Triangulation::CellStatus status, const auto &bytes) {
-      carrier.unpack(cell, status == Triangulation::CELL_REFINE, bytes);
-    });
+  triangulation.notify_ready_to_unpack(handle,
+                                       [&carrier](const auto                              &cell,
+                                                  const typename Triangulation::CellStatus status,
+                                                  const auto                              &bytes) {
+                                         carrier.unpack(cell,
+                                                        status == Triangulation::CELL_REFINE,
+                                                        bytes);
+                                       });
   carrier.finish();
   move_vertices();
   ++changes;
@@ -321,8 +321,7 @@ StructureMesh<dim>::refine_to(const std::vector<std::uint64_t> &keys)
       wanted.clear();
       for (unsigned int e = 0; e < n_elements(); ++e)
         wanted.push_back(there.count(element_keys[e]) == 0 && level(e) < deepest_level);
-    }
-  while (refine(wanted, nothing));
+  } while (refine(wanted, nothing));
 }
 
 template class StructureMesh<2>;

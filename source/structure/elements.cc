@@ -305,13 +305,11 @@ Elements<dim>::rows() const
 
 template <int dim>
 void
-Elements<dim>::child_row(const double      *parent,
-                         const unsigned int child,
-                         double            *row) const
+Elements<dim>::child_row(const double *parent, const unsigned int child, double *row) const
 {
   std::copy_n(parent, data.columns.n_columns(), row);
-  // The mode's amplitude is a quarter (of the last one in 3-D an eighth), and in 3-D the stiffness of
-  // springs is half.
+  // The mode's amplitude is a quarter (of the last one in 3-D an eighth), and in 3-D the stiffness
+  // of springs is half.
   constexpr int n_modes = n_hourglass_modes<dim>;
   for (int j = 0; j < dim; ++j)
     for (int m = 0; m < n_modes; ++m)
@@ -325,8 +323,8 @@ Elements<dim>::child_row(const double      *parent,
     double weight = 1;
     for (int d = 0; d < dim; ++d)
       {
-        const double x = 0.5 * (((child >> d) & 1) == 0 ? -root : root) +
-                         0.5 * (((q >> d) & 1) == 0 ? -1. : 1.);
+        const double x =
+          0.5 * (((child >> d) & 1) == 0 ? -root : root) + 0.5 * (((q >> d) & 1) == 0 ? -1. : 1.);
         weight *= 0.5 * (1 + (((p >> d) & 1) == 0 ? -x : x));
       }
     return weight;

@@ -48,8 +48,7 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
                           const Vector          &gravity,
                           MPI_Comm               comm,
                           const bool             reproducible)
-  : StructuralBody<dim>(body,
-                        std::make_unique<StructureMesh<dim>>(body.section("Mesh"), comm))
+  : StructuralBody<dim>(body, std::make_unique<StructureMesh<dim>>(body.section("Mesh"), comm))
   , section(body)
   , touches_itself(body.flag("Self contact"))
   , reproducible(reproducible)
@@ -433,7 +432,9 @@ template <int dim>
 void
 SolidBody<dim>::serialize(Archive &archive)
 {
-  const Archive::Section section(archive, "body " + this->name());
+  const Archive::Section part(archive, "body " + this->name());
+  if (this->serialize_mesh(archive, changing_mesh()))
+    make_room();
   this->serialize_nodes(archive, {Node::internal, dim});
   elements.serialize(archive, mesh().element_keys);
   archive.same("time", time);

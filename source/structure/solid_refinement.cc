@@ -119,9 +119,9 @@ SolidBody<dim>::restore_motion(const Motion &before, const CarriedState<dim> &st
       changed.push_back(n);
   std::fill_n(nodes[Node::impulse], nodes.size(), 0.);
 
-  Motion missing = motion();
-  missing.momentum         = before.momentum - missing.momentum;
-  missing.angular_momentum = before.angular_momentum - missing.angular_momentum;
+  Motion missing                   = motion();
+  missing.momentum                 = before.momentum - missing.momentum;
+  missing.angular_momentum         = before.angular_momentum - missing.angular_momentum;
   const std::vector<double> change = rigid_change(changed, missing);
   for (unsigned int i = 0; i < changed.size(); ++i)
     for (int d = 0; d < dim; ++d)
@@ -135,11 +135,11 @@ template <int dim>
 std::vector<double>
 SolidBody<dim>::rigid_change(const std::vector<unsigned int> &which, const Motion &missing)
 {
-  constexpr int   n     = dim + n_spins<dim>;
-  const Columns  &nodes = this->node_columns;
-  const double   *mass  = nodes[Node::mass];
-  const MPI_Comm  comm  = mesh().communicator();
-  RankSums        first(1 + dim, reproducible);
+  constexpr int  n     = dim + n_spins<dim>;
+  const Columns &nodes = this->node_columns;
+  const double  *mass  = nodes[Node::mass];
+  const MPI_Comm comm  = mesh().communicator();
+  RankSums       first(1 + dim, reproducible);
   for (const unsigned int i : which)
     {
       first.add(0, mass[i]);
@@ -177,8 +177,8 @@ SolidBody<dim>::rigid_change(const std::vector<unsigned int> &which, const Motio
     {
       for (int l = 0; l < n; ++l)
         matrix(k, l) = sums[k * n + l] * scale(k) * scale(l) / moments[0];
-      right[k] = scale(k) / moments[0] *
-                 (k < dim ? missing.momentum[k] : moment[dim == 2 ? 2 : k - dim]);
+      right[k] =
+        scale(k) / moments[0] * (k < dim ? missing.momentum[k] : moment[dim == 2 ? 2 : k - dim]);
     }
   constexpr double singular = 1e-10;
   matrix.compute_inverse_svd(singular);
@@ -196,12 +196,86 @@ SolidBody<dim>::rigid_change(const std::vector<unsigned int> &which, const Motio
   return change;
 }
 
-#define INSTANTIATE(dim)                                                                     \
-  template typename SolidBody<dim>::Motion SolidBody<dim>::motion() const;                   \
-  template bool                            SolidBody<dim>::refine(const std::vector<bool> &); \
-  template void SolidBody<dim>::follow_mesh(const CarriedState<dim> &);                      \
-  template void SolidBody<dim>::restore_motion(const Motion &, const CarriedState<dim> &);   \
-  template std::vector<double> SolidBody<dim>::rigid_change(const std::vector<unsigned int> &, \
+template <int dim>
+void
+SolidBody<dim>::make_room()
+{
+  this->node_columns = Columns(Node::n_columns);
+  this->node_columns.resize(mesh().n_nodes());
+  Columns rows = Columns(elements.rows().n_columns());
+  rows.resize(mesh().n_elements());
+  CarriedState<dim> state{this->node_columns, rows, {}};
+  state.is_new_node.resize(mesh().n_nodes());
+  follow_mesh(state);
+}
+
+template <int dim>
+std::vector<double>
+SolidBody<dim>::stress_jumps() const
+{
+  constexpr unsigned int n = Symmetric<dim, double>::size;
+  const auto            &m = mesh();
+  // Mass times stress, and mass.
+  Columns means(n + 1);
+  means.resize(m.n_nodes());
+  double largest[2] = {0, 0};
+  for (unsigned int e = 0; e < m.n_elements(); ++e)
+    {
+      largest[1] = std::max(largest[1], elements.mass(e));
+      for (unsigned int c = 0; c < n; ++c)
+        largest[0] = std::max(largest[0], std::fabs(elements.mass(e) * stress(e)[c]));
+    }
+  const SumGrid of_stress = sum_grid(largest[0]), of_mass = sum_grid(largest[1]);
+  for (unsigned int e = 0; e < m.n_elements(); ++e)
+    {
+      const auto mean = stress(e);
+      for (const unsigned int node : m.elements[e])
+        {
+          for (unsigned int c = 0; c < n; ++c)
+            means[c][node] += of_stress.round(elements.mass(e) * mean[c]);
+          means[n][node] += of_mass.round(elements.mass(e));
+        }
+    }
+  for (const HangingNode &hanging : m.hanging_nodes)
+    for (unsigned int c = 0; c <= n; ++c)
+      for (const auto &[parent, weight] : hanging.parents)
+        means[c][parent] += weight * means[c][hanging.node];
+  m.exchange.sum_to_owners(means, 0, n + 1);
+  for (unsigned int node = 0; node < m.n_owned_nodes(); ++node)
+    for (unsigned int c = 0; c < n && means[n][node] > 0; ++c)
+      means[c][node] /= means[n][node];
+  m.exchange.update_ghosts(means, 0, n);
+  for (const HangingNode &hanging : m.hanging_nodes)
+    for (unsigned int c = 0; c < n; ++c)
+      {
+        means[c][hanging.node] = 0;
+        for (const auto &[parent, weight] : hanging.parents)
+          means[c][hanging.node] += weight * means[c][parent];
+      }
+
+  std::vector<double> result;
+  for (unsigned int e = 0; e < m.n_elements(); ++e)
+    {
+      auto jump = stress(e);
+      for (const unsigned int node : m.elements[e])
+        for (unsigned int c = 0; c < n; ++c)
+          jump[c] -= means[c][node] / m.nodes_per_element;
+      double square = 0;
+      for (unsigned int c = 0; c < n; ++c)
+        square += (c < 3 ? 1 : 2) * jump[c] * jump[c];
+      result.push_back(std::sqrt(square));
+    }
+  return result;
+}
+
+#define INSTANTIATE(dim)                                                                           \
+  template typename SolidBody<dim>::Motion SolidBody<dim>::motion() const;                         \
+  template bool                            SolidBody<dim>::refine(const std::vector<bool> &);      \
+  template void                            SolidBody<dim>::make_room();                            \
+  template std::vector<double>             SolidBody<dim>::stress_jumps() const;                   \
+  template void                            SolidBody<dim>::follow_mesh(const CarriedState<dim> &); \
+  template void SolidBody<dim>::restore_motion(const Motion &, const CarriedState<dim> &);         \
+  template std::vector<double> SolidBody<dim>::rigid_change(const std::vector<unsigned int> &,     \
                                                             const Motion &);
 
 INSTANTIATE(2)

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/base/mpi.templates.h>
+
 #include <coracle/structure/structural_body.h>
 
 #include <algorithm>
@@ -65,6 +67,23 @@ StructuralBody<dim>::serialize_nodes(Archive &archive, const Archive::Summed &su
   for (unsigned int n = 0; n < body_mesh->n_nodes(); ++n)
     keys.push_back(body_mesh->key(n));
   archive.keyed("nodes", keys, body_mesh->n_owned_nodes(), node_columns, summed);
+}
+
+template <int dim>
+bool
+StructuralBody<dim>::serialize_mesh(Archive &archive, StructureMesh<dim> &mesh)
+{
+  std::vector<std::uint64_t> keys = mesh.element_keys;
+  archive.all("element_keys", keys);
+  if (!archive.loads())
+    return false;
+  // As many ranks as have saved get each its own.
+  std::vector<std::uint64_t> all_keys;
+  for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.communicator(), keys))
+    all_keys.insert(all_keys.end(), of_rank.begin(), of_rank.end());
+  const unsigned int before = mesh.n_changes();
+  mesh.refine_to(all_keys);
+  return mesh.n_changes() > before;
 }
 
 template class StructuralBody<2>;

@@ -69,7 +69,7 @@ public:
   /// of nodes are those of the mesh as it was. Collective.
   void refine_to(const std::vector<std::uint64_t> &keys);
 
-  /// How often the mesh has changed.
+  /// How often the mesh has changed since it was made.
   unsigned int n_changes() const { return changes; }
 
   /// How often an element has been halved since the coarse mesh.

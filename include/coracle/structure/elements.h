@@ -78,6 +78,7 @@ public:
   void add_mass(double *nodal_mass, const StructureMesh<dim> &mesh, const SumGrid &grid) const;
   /// Of one element on this rank [kg].
   double largest_mass() const;
+  double mass(const unsigned int element) const { return data.columns[Data::mass][element]; }
 
   /**
    * Stress and internal force at the end of a step from position and
@@ -132,7 +133,7 @@ public:
   };
 
 private:
-  void              allocate(const StructureMesh<dim> &mesh);
+  void allocate(const StructureMesh<dim> &mesh);
   template <typename Material>
   void              update_with(const Material &material, Columns &nodes, const double dt);
   void              compute_reference(const StructureMesh<dim> &mesh);

@@ -60,6 +60,11 @@ public:
   /// Throws RunFailure, on all ranks, where the motion is not a number.
   void update_stress(const double);
 
+  /// Halves elements of a mesh that is none of sheets, see SolidBody::refine: the surface gets more
+  /// facets and nodes, the body stays what it is. Collective.
+  bool         refine(const std::vector<bool> &wanted);
+  unsigned int n_mesh_changes() const;
+
   Energies         energies() const;
   BodySummary<dim> summary() const;
 

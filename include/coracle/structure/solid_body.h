@@ -71,15 +71,23 @@ public:
   void update_stress(const double dt);
 
   /**
-   * Between steps: halves elements (see StructureMesh::refine). Nothing moves, and what is new moves
-   * with the elements that it is in; the whole mass and momentum stay, also the angular momentum
-   * where nodes are free; the kinetic energy that this takes goes into the books as strain.
-   * Collective; throws RunFailure, on all ranks.
+   * Between steps: halves elements (see StructureMesh::refine). Nothing moves, and what is new
+   * moves with the elements that it is in; the whole mass and momentum stay, also the angular
+   * momentum where nodes are free; the kinetic energy that this takes goes into the books as
+   * strain. Collective; throws RunFailure, on all ranks.
    *
    * @param wanted by element of mesh()
    * @return has anything changed?
    */
   bool refine(const std::vector<bool> &wanted);
+
+  /// How often the mesh has changed since the start of the case.
+  unsigned int n_mesh_changes() const { return mesh().n_changes(); }
+
+  /// Of each element: how far its mean stress is from what means over the elements at its nodes
+  /// give for it, a norm [Pa]. Collective. Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 24
+  /// (1987) 337, with lumped means.
+  std::vector<double> stress_jumps() const;
 
   void serialize(Archive &archive);
 
@@ -115,6 +123,8 @@ private:
   Motion motion() const;
   /// All that is made from the mesh.
   void follow_mesh(const CarriedState<dim> &state);
+  /// The same, for a state that is loaded next.
+  void make_room();
   /// Gives the nodes of refined elements the momentum that is missing, as the least change of their
   /// velocities, a rigid motion.
   void                restore_motion(const Motion &before, const CarriedState<dim> &state);

@@ -4,7 +4,7 @@
 #include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
 #include <coracle/base/parameters.h>
-#include <coracle/mesh/body_mesh.h>
+#include <coracle/mesh/structure_mesh.h>
 #include <coracle/structure/body_state.h>
 #include <coracle/structure/node_columns.h>
 
@@ -74,6 +74,9 @@ protected:
   /// After the mesh has changed.
   void find_surface_nodes();
 
+  /// Saves which elements there are, or refines the mesh until it has those. Collective.
+  /// @return has the mesh been changed?
+  static bool serialize_mesh(Archive &archive, StructureMesh<dim> &mesh);
   /// @param summed columns to which each rank has added what its elements give
   void serialize_nodes(Archive &archive, const Archive::Summed &summed);
 

@@ -46,7 +46,7 @@ test.check(f"as with the fine mesh ({speeds[0]:.4g} coarse, {speeds[1]:.4g}, {sp
 test.band("energy balance", max(map(abs, adaptive["energy.balance_error"])), 0, 0.02)
 
 for ranks in (1, 2):
-    values = {"End time": "20 ms", "Checkpoint/Interval in steps": 100, "Checkpoint/Number kept": 100}
+    values = {"End time": "20 ms", "Checkpoint/Interval in steps": 30, "Checkpoint/Number kept": 100}
     whole = test.run(case, values, ranks).directory
     steps = [manifest(c)["step"] for c in checkpoints(whole)]
     copy = cut_after(whole, steps[len(steps) // 3])
@@ -57,7 +57,7 @@ for ranks in (1, 2):
     test.check(f"{name}: the states are the same",
                all(state(c) == state(copy / "checkpoints" / c.name) for c in checkpoints(whole)))
 
-values = {"End time": "14 ms", "Checkpoint/Interval in steps": 100, "Checkpoint/Number kept": 100, **exact}
+values = {"End time": "14 ms", "Checkpoint/Interval in steps": 30, "Checkpoint/Number kept": 100, **exact}
 whole = test.run(case, values, 1)
 for ranks in (2, 3):
     steps = [manifest(c)["step"] for c in checkpoints(whole.directory)]

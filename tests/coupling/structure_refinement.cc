@@ -34,9 +34,8 @@ template <int dim>
 std::string
 text(const std::string &other, const bool reproducible = false)
 {
-  return std::string("set Dimension = ") + (dim == 2 ? "2" : "3") +
-         (reproducible ? "\nset Reproducible = true" : "") +
-         "\nsubsection Contact\n set Tolerance = 1e-10\n"
+  return std::string(reproducible ? "set Reproducible = true\n" : "") +
+         "subsection Contact\n set Tolerance = 1e-10\n"
          " set Maximum iterations = 10000\nend\nsubsection Grid\n" +
          corners<dim>({-2, -2, -2}, {2, 2, 2}) +
          " set Cell size = 0.25\nend\nsubsection Materials\n subsection rubber\n set Model = "

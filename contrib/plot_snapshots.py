@@ -91,11 +91,13 @@ def draw_structure(axes, frame, view, snapshot, colours):
         polygons.set_array(values[order])
         polygons.set(cmap=snapshot.get("structure map", "magma"), edgecolor="face", linewidth=0.2, **colours)
     elif view.flat:
-        polygons.set(facecolor="#c9cdd2", edgecolor="#c9cdd2", linewidth=0.3)
+        line = "0.35" if snapshot.get("mesh") else "#c9cdd2"
+        polygons.set(facecolor="#c9cdd2", edgecolor=line, linewidth=0.3)
     else:
         polygons.set(facecolor=shaded(frame.points[cells[order]], view), edgecolor="0.4", linewidth=0.3)
     axes.add_collection(polygons)
-    if view.flat:
+    # Where nodes hang, edges of elements would be taken for the outside.
+    if view.flat and not snapshot.get("mesh"):
         outline = LineCollection(points[edges(cells)], colors="0.15", linewidths=0.9, zorder=4)
         axes.add_collection(outline)
     return polygons

@@ -41,13 +41,24 @@ FacetExchange<dim>::rebuild(const Surface<dim>               &owned,
     {
       Partner partner{r, {}, {}, {}};
       std::fill(place.begin(), place.end(), none);
-      const auto send_node = [&](const unsigned int node) {
+      const auto send_one = [&](const unsigned int node) {
         if (place[node] == none)
           {
             place[node] = partner.index.size();
             partner.index.push_back(node);
             nodes[r].push_back(owned.nodes[node]);
           }
+      };
+      // What a hanging node hangs on goes before it, so that it can be named by its place.
+      const auto send_node = [&](const unsigned int node) {
+        const auto &parents = owned.nodes[node].parents;
+        if (place[node] != none || !owned.nodes[node].hangs())
+          return send_one(node);
+        for (const int parent : parents)
+          send_one(parent);
+        send_one(node);
+        for (unsigned int i = 0; i < parents.size(); ++i)
+          nodes[r].back().parents[i] = place[parents[i]];
       };
       for (const auto &facet : owned.facets)
         {
@@ -104,6 +115,8 @@ FacetExchange<dim>::merge(const std::vector<std::vector<SurfaceNode<dim>>> &node
             if (entry.second)
               {
                 local.nodes.push_back(node);
+                for (int &parent : local.nodes.back().parents)
+                  parent = (parent < 0 ? -1 : static_cast<int>(partner.index[parent]));
                 home.push_back(r);
               }
             else if (node.owner == static_cast<int>(r))
@@ -251,11 +264,12 @@ FacetExchange<dim>::serialize(Archive &archive)
 {
   // Bodies, and where nodes are, come with the next update().
   std::vector<std::uint64_t> keys, facets;
-  std::vector<int>           owners;
+  std::vector<int>           owners, parents;
   for (const auto &node : local.nodes)
     {
       keys.push_back(node.key);
       owners.push_back(node.owner);
+      parents.insert(parents.end(), node.parents.begin(), node.parents.end());
     }
   for (const auto &facet : local.facets)
     {
@@ -265,6 +279,7 @@ FacetExchange<dim>::serialize(Archive &archive)
     }
   archive.own("node_keys", keys);
   archive.own("node_owners", owners);
+  archive.own("node_parents", parents);
   archive.own("facets", facets);
   archive.own("local_nodes", local_nodes);
   local.nodes.resize(keys.size());
@@ -272,6 +287,7 @@ FacetExchange<dim>::serialize(Archive &archive)
     {
       local.nodes[i].key   = keys[i];
       local.nodes[i].owner = owners[i];
+      std::copy_n(&parents[2 * i], 2, local.nodes[i].parents.begin());
     }
   constexpr unsigned int n_vertices = vertices_per_facet<dim>;
   local.facets.resize(facets.size() / (n_vertices + 2));

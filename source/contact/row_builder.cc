@@ -36,6 +36,12 @@ RowBuilder<dim>::add_node(const Surface<dim> &surface,
                           const unsigned int  index,
                           const double        weight)
 {
+  if (surface.nodes[index].hangs())
+    {
+      for (const int parent : surface.nodes[index].parents)
+        add_node(surface, parent, 0.5 * weight);
+      return;
+    }
   unsigned int &number = local_number(node_place, index);
   if (number == none)
     {

@@ -71,6 +71,7 @@ SurfaceDistance<dim>::reinit(const Surface<dim>     &owned,
         thick[f].upper[d] += half;
       }
   tree.build(thick);
+  noted.assign(boxes.size(), false);
 }
 
 template <int dim>
@@ -105,6 +106,47 @@ SurfaceDistance<dim>::distance(const dealii::Point<dim> &place,
       nearest = std::min(nearest, std::sqrt(distance_square(place, surface, facet)) - half);
     }
   return nearest;
+}
+
+template <int dim>
+void
+SurfaceDistance<dim>::note_near(const dealii::Point<dim> &place,
+                                const double              limit,
+                                const std::vector<bool>  &counts)
+{
+  const auto &surface = exchange.surface();
+  Box         around;
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      around.lower[d] = place[d] - limit;
+      around.upper[d] = place[d] + limit;
+    }
+  tree.find(around, found);
+  for (const unsigned int f : found)
+    {
+      const auto  &facet = surface.facets[f];
+      const double reach = limit + 0.5 * surface.bodies[facet.body].thickness;
+      noted[f] =
+        noted[f] || (counts[facet.body] && distance_square(place, boxes[f]) < reach * reach &&
+                     distance_square(place, surface, facet) < reach * reach);
+    }
+}
+
+template <int dim>
+std::vector<bool>
+SurfaceDistance<dim>::noted_nodes(const std::size_t n_owned_nodes) const
+{
+  const auto                         &surface = exchange.surface();
+  std::vector<dealii::Tensor<1, dim>> marks(surface.nodes.size()), owned(n_owned_nodes);
+  for (std::size_t f = 0; f < noted.size(); ++f)
+    if (noted[f])
+      for (const unsigned int node : surface.facets[f].nodes)
+        marks[node][0] = 1;
+  exchange.add_to_owners(marks, owned);
+  std::vector<bool> result;
+  for (const auto &mark : owned)
+    result.push_back(mark[0] > 0);
+  return result;
 }
 
 template class SurfaceDistance<2>;

@@ -152,6 +152,14 @@ ContactCoupling<dim>::octree_changed(const MaterialPointSystem<dim> &points)
 }
 
 template <int dim>
+void
+ContactCoupling<dim>::structure_changed(StructureSystem<dim> &structure)
+{
+  surface_nodes.structure_changed(structure);
+  system.surface_changed();
+}
+
+template <int dim>
 template <typename Action>
 void
 ContactCoupling<dim>::for_each_node(const MaterialPointSystem<dim> &points,

@@ -102,7 +102,9 @@ Coupling<dim>::declare(Declaration &root)
     "with finite elements between them that are found anew in each step.");
   MaterialPointBody<dim>::declare(body.when("Kind", "material points"));
   SolidBody<dim>::declare(body.when("Kind", "solid"));
+  StructureAdaptivity<dim>::declare(body.when("Kind", "solid"), true);
   RigidBody<dim>::declare(body.when("Kind", "rigid"));
+  StructureAdaptivity<dim>::declare(body.when("Kind", "rigid"), false);
   MeshlessSystem<dim>::declare(body.when("Kind", "meshless fluid"));
   Declaration &contact =
     root.section("Contact",
@@ -132,6 +134,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, Archive *saved_oc
              structure,
              comm)
   , adaptivity(root, structure, contact::ContactOptions(root.section("Contact")).method)
+  , structure_adaptivity(root, points, structure)
   , comm(comm)
 {
   if (options.reproducible)
@@ -139,6 +142,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, Archive *saved_oc
   if (saved_octree == nullptr)
     {
       projected = contacts.resolve_initial_overlaps(root, points, structure);
+      structure_adaptivity.initialise(points, structure, contacts);
       adaptivity.initialise(points, structure, contacts);
       // What starts on a surface touches it in the first step already.
       contacts.find(points, structure, 0);
@@ -163,7 +167,11 @@ Coupling<dim>::serialize(Archive &archive)
   archive.same("dt", current_dt);
   archive.same("first_dt", first_dt);
   archive.same("step", n_steps);
-  structure.serialize(archive);
+  if (structure.serialize(archive) && archive.loads())
+    {
+      contacts.structure_changed(structure);
+      points.structure_changed();
+    }
   points.serialize(archive);
   fluids.serialize(archive, structure);
   contacts.serialize(archive, points);
@@ -266,6 +274,8 @@ Coupling<dim>::advance(const double end_time)
     timed.count("point", fluids.n_points());
   });
   timed("adapt", [&] { adaptivity.update(points, structure, contacts, current_time, dt); });
+  timed("adapt structures",
+        [&] { structure_adaptivity.update(points, structure, contacts, n_steps); });
   timed("checks", [&] { check_state(); });
   count_work();
 }

@@ -109,6 +109,17 @@ StructurePoints<dim>::StructurePoints(const bool            wanted,
 
 template <int dim>
 void
+StructurePoints<dim>::structure_changed(StructureSystem<dim> &structure)
+{
+  if (parts.empty())
+    return;
+  parts.clear();
+  const auto &surface = structure.publish_surface();
+  make_parts(structure, surface, assign_nodes(surface, comm));
+}
+
+template <int dim>
+void
 StructurePoints<dim>::make_parts(const StructureSystem<dim>  &structure,
                                  const contact::Surface<dim> &surface,
                                  const std::vector<bool>     &is_mine)
@@ -121,7 +132,7 @@ StructurePoints<dim>::make_parts(const StructureSystem<dim>  &structure,
       part.body              = structure.first_surface(b);
       part.radius            = thickness > 0 ? 0.5 * thickness : smallest_radius * smallest_edge;
       for (unsigned int i = structure.begin_nodes(b); i < structure.begin_nodes(b + 1); ++i)
-        if (is_mine[i] && !structure.is_hanging(i))
+        if (is_mine[i] && !surface.nodes[i].hangs())
           {
             part.nodes.push_back(i);
             part.keys.push_back(surface.nodes[i].key);

@@ -67,7 +67,10 @@ template <int dim>
 void
 StructureSystem<dim>::make_surface()
 {
-  surface                 = contact::Surface<dim>();
+  surface = contact::Surface<dim>();
+  first_node.clear();
+  body_of_surface.clear();
+  sheets                  = 0;
   int           n_rigid   = 0;
   std::uint64_t first_key = 0, first_facet_key = 0;
   for_each_surface([&](auto &body, const unsigned int index) {
@@ -80,7 +83,6 @@ StructureSystem<dim>::make_surface()
           body.body_inverse_mass().norm() > 0 || body.inverse_inertia().norm() > 0;
       else
         surface.bodies[s].self_contact = body.self_contact();
-    received.emplace_back();
 
     first_node.push_back(surface.nodes.size());
     std::map<unsigned int, unsigned int> place;
@@ -91,11 +93,15 @@ StructureSystem<dim>::make_surface()
         surface.nodes.back().key   = first_key + body.key(node);
         surface.nodes.back().owner = body.owner(node);
       }
-    hanging.resize(surface.nodes.size());
-    if constexpr (!is_rigid)
+    if constexpr (!is_rigid && dim == 3)
       for (const HangingNode &node : body.mesh().hanging_nodes)
         if (const auto found = place.find(node.node); found != place.end())
-          hanging[found->second] = true;
+          {
+            // Those in the middle of a face are inside the body.
+            AssertDimension(node.parents.size(), 2);
+            for (unsigned int i = 0; i < 2; ++i)
+              surface.nodes[found->second].parents[i] = place.at(node.parents[i].first);
+          }
     std::uint64_t largest_key = 0;
     for (const auto &facet : body.facets())
       {
@@ -110,6 +116,7 @@ StructureSystem<dim>::make_surface()
     first_key += body.mesh().n_global_nodes();
     first_facet_key += mpi::max(largest_key, comm) + 1;
   });
+  received.resize(first_node.size());
 }
 
 template <int dim>
@@ -285,11 +292,40 @@ StructureSystem<dim>::apply_node_impulses(
 }
 
 template <int dim>
-void
+bool
+StructureSystem<dim>::has_failed() const
+{
+  return mpi::any(failure.has_value(), comm);
+}
+
+template <int dim>
+bool
+StructureSystem<dim>::refine(const std::vector<std::vector<bool>> &wanted)
+{
+  bool changed = false;
+  for_each_surface([&](auto &body, const unsigned int index) {
+    const bool is_meant = mpi::any(!wanted[index].empty(), comm);
+    if (is_meant && body.refine(wanted[index]))
+      changed = true;
+  });
+  if (changed)
+    make_surface();
+  return changed;
+}
+
+template <int dim>
+bool
 StructureSystem<dim>::serialize(Archive &archive)
 {
-  for_each_surface([&](auto &body, const unsigned int) { body.serialize(archive); });
+  bool changed = false;
+  for_each_surface([&](auto &body, const unsigned int) {
+    body.serialize(archive);
+    changed = changed || body.n_mesh_changes() > 0;
+  });
+  if (archive.loads() && changed)
+    make_surface();
   archive.share("contact_momentum_of_structures", received);
+  return changed;
 }
 
 template class StructureSystem<2>;

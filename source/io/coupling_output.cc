@@ -150,6 +150,20 @@ CouplingOutput<dim>::make_probes(const Parameters &root, Coupling<dim> &coupling
 
 template <int dim>
 void
+CouplingOutput<dim>::follow_meshes(Coupling<dim> &coupling)
+{
+  unsigned int changes = 0;
+  for_each_structure(coupling.structure,
+                     [&changes](const auto &body) { changes += body.n_mesh_changes(); });
+  std::vector<std::uint64_t> keys;
+  if (changes != mesh_changes)
+    for (auto &[body, probe] : body_probes)
+      probe.find_again(node_view(*find_structure(coupling.structure, body), keys));
+  mesh_changes = changes;
+}
+
+template <int dim>
+void
 CouplingOutput<dim>::write(Coupling<dim> &coupling)
 {
   files_step     = coupling.step();
@@ -289,129 +303,6 @@ CouplingOutput<dim>::write_octree(const Coupling<dim> &coupling)
 }
 
 template <int dim>
-EnergyBooks
-CouplingOutput<dim>::energies(const Coupling<dim> &coupling)
-{
-  const auto    &books = coupling.points.books();
-  const MPI_Comm comm  = coupling.points.octree.triangulation.get_communicator();
-  EnergyBooks    result;
-  result.kinetic       = mpi::sum(books.kinetic, comm);
-  result.internal      = mpi::sum(books.internal, comm);
-  result.damping       = mpi::sum(books.damping, comm);
-  result.contact       = -mpi::sum(books.contact, comm);
-  result.transfer      = mpi::sum(books.transfer, comm);
-  result.boundary      = mpi::sum(books.boundary, comm);
-  result.external_work = mpi::sum(books.external_work, comm);
-  for (const auto &fluid : coupling.fluids.bodies)
-    FluidOutput<dim>::add_energies(fluid, comm, result);
-  const auto add = [&result](const auto &body) {
-    const auto e = body.energies();
-    result.kinetic += e.kinetic;
-    result.strain += e.strain;
-    result.hourglass += e.hourglass;
-    result.damping += e.damping;
-    result.contact -= e.contact_work;
-    result.external_work += e.external_work;
-  };
-  for (const auto &body : coupling.structure.solids)
-    add(body);
-  for (const auto &body : coupling.structure.rigids)
-    add(body);
-  return result;
-}
-
-template <int dim>
-void
-CouplingOutput<dim>::add_bodies(Report<dim> &report, Coupling<dim> &coupling)
-{
-  std::vector<dealii::Tensor<1, dim>> momentum = coupling.structure.contact_momentum();
-  for_each_structure(coupling.structure, [&](const auto &body) {
-    const auto summary = body.summary();
-    report.bodies.push_back({body.name(), summary.mass, summary.centre, summary.velocity, {}});
-  });
-  const auto  &given = coupling.contacts.contact_momentum();
-  unsigned int s     = 0;
-  for (const auto &body : coupling.points.bodies)
-    {
-      const auto &points = body.points;
-      RankSums    rank_sums(1 + 2 * dim, points.reproducible);
-      for (std::size_t row = 0; row < points.n_rows(); ++row)
-        {
-          const double m = points.column(Layout<dim>::mass)[row];
-          rank_sums.add(0, m);
-          for (int d = 0; d < dim; ++d)
-            {
-              rank_sums.add(1 + d, m * points.column(Layout<dim>::position + d)[row]);
-              rank_sums.add(1 + dim + d, m * points.column(Layout<dim>::velocity + d)[row]);
-            }
-        }
-      const auto      sums = rank_sums.total(comm);
-      BodyReport<dim> entry{body.name(), sums[0], {}, {}, {}};
-      for (int d = 0; d < dim && sums[0] > 0; ++d)
-        {
-          entry.centre[d]   = sums[1 + d] / sums[0];
-          entry.velocity[d] = sums[1 + dim + d] / sums[0];
-        }
-      report.bodies.push_back(entry);
-      momentum.push_back(s < given.size() ? given[s] : dealii::Tensor<1, dim>());
-      ++s;
-    }
-  for (const auto &body : coupling.fluids.bodies)
-    {
-      report.bodies.push_back(FluidOutput<dim>::report(body));
-      momentum.emplace_back();
-    }
-  const double interval = report.time - reported_time;
-  for (unsigned int b = 0; b < report.bodies.size(); ++b)
-    {
-      auto &body = report.bodies[b];
-      report.momentum += body.mass * body.velocity;
-      const auto total = mpi::sum(momentum[b], comm);
-      if (interval > 0)
-        reported_force[b] = (total - reported_momentum[b]) / interval;
-      reported_momentum[b] = total;
-      body.contact_force   = reported_force[b];
-    }
-  reported_time = report.time;
-}
-
-template <int dim>
-Report<dim>
-CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
-{
-  Report<dim> report;
-  report.time                      = coupling.time();
-  report.step                      = coupling.step();
-  report.dt                        = coupling.last_step();
-  report.penetrations              = coupling.contacts.n_penetrations();
-  report.contacts                  = coupling.contacts.report().n_contacts;
-  report.resolved_in_time          = coupling.contacts.report().n_resolved;
-  report.worst_gap                 = coupling.worst_gap;
-  report.contact_steps             = coupling.contact_steps;
-  report.unconverged_contact_steps = coupling.unconverged_contact_steps;
-  report.particles                 = mpi::sum(coupling.points.n_particles(), comm);
-  report.particle_steps            = mpi::sum(coupling.particle_steps, comm);
-  for (const auto &body : coupling.points.bodies)
-    {
-      report.particles_created += mpi::sum(body.points.ledger.created, comm);
-      report.particles_removed += mpi::sum(body.points.ledger.removed, comm);
-      report.particles_converted += mpi::sum(body.points.ledger.converted, comm);
-      report.particles_split += mpi::sum(body.points.ledger.split, comm);
-      report.particles_merged += mpi::sum(body.points.ledger.merged, comm);
-    }
-  report.cells     = mpi::sum<std::uint64_t>(coupling.points.octree.n_owned_leaves(), comm);
-  report.imbalance = coupling.adaptivity.imbalance(coupling.points, coupling.contacts);
-  report.energies  = energies(coupling);
-  if (first_report)
-    balance.start(report.energies);
-  first_report                = false;
-  report.energy_balance_error = balance.error(report.energies);
-  add_bodies(report, coupling);
-  coupling.worst_gap = 0;
-  return report;
-}
-
-template <int dim>
 void
 CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &coupling)
 {
@@ -435,6 +326,7 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   statistics.set("contact.worst_violation", solver.worst_violation);
   statistics.set("contact.work", coupling.contacts.report().work);
   statistics.set("contact.energy_fed", coupling.contacts.report().energy_fed);
+  follow_meshes(coupling);
   std::vector<std::uint64_t> keys;
   for (const auto &[body, probe] : body_probes)
     probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);
@@ -484,6 +376,14 @@ CouplingOutput<dim>::serialize(Archive &archive)
     series.serialize(archive);
   if (octree)
     octree->serialize(archive);
+  for (auto &[body, probe] : body_probes)
+    {
+      const Archive::Section part(archive, "probe " + probe.name());
+      probe.serialize(archive);
+    }
+  // Meshes have been loaded: nodes are looked for again.
+  if (archive.loads())
+    mesh_changes = -1;
   balance.serialize(archive);
   archive.same("reported_momentum", reported_momentum);
   archive.same("reported_force", reported_force);

@@ -115,17 +115,24 @@ BodyPointProbe<dim>::BodyPointProbe(const ProbeDescription<dim> &description,
                                     MPI_Comm                     communicator)
   : prefix(description.prefix()), comm(communicator)
 {
+  find(nodes, description.position);
+}
+
+template <int dim>
+void
+BodyPointProbe<dim>::find(const NodeView &nodes, const dealii::Point<dim> &near)
+{
+  local_node     = -1;
   double nearest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < nodes.n_nodes; ++i)
-    nearest = std::min(nearest, description.position.distance(entry<dim>(nodes.reference, i)));
+    nearest = std::min(nearest, near.distance(entry<dim>(nodes.reference, i)));
   found_distance = mpi::min(nearest, comm);
 
   // Nodes at the same distance up to round-off: the lowest key decides, on any partition.
-  const double  limit  = found_distance * (1 + 1e-9) + 1e-15 * description.position.norm();
+  const double  limit  = found_distance * (1 + 1e-9) + 1e-15 * near.norm();
   std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t i = 0; i < nodes.n_nodes; ++i)
-    if (description.position.distance(entry<dim>(nodes.reference, i)) <= limit &&
-        nodes.keys[i] < lowest)
+    if (near.distance(entry<dim>(nodes.reference, i)) <= limit && nodes.keys[i] < lowest)
       {
         lowest     = nodes.keys[i];
         local_node = i;
@@ -136,6 +143,11 @@ BodyPointProbe<dim>::BodyPointProbe(const ProbeDescription<dim> &description,
     local_node = -1;
   AssertThrow(mpi::sum(local_node >= 0 ? 1 : 0, comm) == 1,
               dealii::ExcMessage("The node of probe '" + prefix + "' must have one owner."));
+  // Only its owner adds anything.
+  dealii::Tensor<1, dim> x;
+  if (local_node >= 0)
+    x = entry<dim>(nodes.reference, local_node);
+  place = dealii::Point<dim>(mpi::sum(x, comm));
 }
 
 template <int dim>

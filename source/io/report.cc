@@ -50,6 +50,7 @@ add_standard_columns(Statistics &statistics, const std::vector<std::string> &bod
                                  "particles.merged",
                                  "particle_steps",
                                  "cells",
+                                 "elements",
                                  "imbalance"})
     statistics.add_column(name, "");
   for (const char *const name : {"kinetic",
@@ -94,6 +95,7 @@ set_standard_columns(Statistics &statistics, const Report<dim> &report)
   statistics.set("particles.merged", report.particles_merged);
   statistics.set("particle_steps", report.particle_steps);
   statistics.set("cells", report.cells);
+  statistics.set("elements", report.elements);
   statistics.set("imbalance", report.imbalance);
 
   const EnergyBooks &e = report.energies;

@@ -35,7 +35,7 @@ template <typename Cell>
 std::uint64_t
 element_key(const Cell &cell)
 {
-  constexpr unsigned int path_bits = 3 * 11 + 1;
+  constexpr unsigned int path_bits = 3 * StructureMesh<2>::deepest_level + 1;
   const dealii::CellId   id        = cell->id();
   std::uint64_t          path      = 1;
   for (const auto child : id.get_child_indices())
@@ -66,8 +66,9 @@ StructureMesh<dim>::StructureMesh(const Parameters &section, MPI_Comm comm)
   // Manifolds know the shape where it was generated, not where it is now.
   triangulation.reset_all_manifolds();
   triangulation.set_all_manifold_ids(dealii::numbers::flat_manifold_id);
-  refine_region(section);
   number_nodes();
+  refine_region(section);
+  changes = 0;
 }
 
 template <int dim>
@@ -100,16 +101,20 @@ StructureMesh<dim>::refine_region(const Parameters &section)
                         "wrong number of coordinates",
                         std::to_string(box.size()) + " of them",
                         "give lower and upper corner, " + std::to_string(2 * dim) + " numbers");
-  for (const auto &cell : triangulation.active_cell_iterators())
-    if (cell->is_locally_owned())
-      {
-        bool inside = true;
-        for (int d = 0; d < dim; ++d)
-          inside = inside && box[d] <= cell->center()[d] && cell->center()[d] <= box[dim + d];
-        if (inside)
-          cell->set_refine_flag();
-      }
-  triangulation.execute_coarsening_and_refinement();
+  std::vector<bool> wanted;
+  for (const auto &element : elements)
+    {
+      dealii::Point<dim> centre;
+      for (const unsigned int node : element)
+        centre += this->nodes[node] / nodes_per_element;
+      bool inside = true;
+      for (int d = 0; d < dim; ++d)
+        inside = inside && box[d] <= centre[d] && centre[d] <= box[dim + d];
+      wanted.push_back(inside);
+    }
+  Columns           no_node_columns, no_element_columns;
+  CarriedState<dim> nothing{no_node_columns, no_element_columns, {}};
+  refine(wanted, nothing);
 }
 
 template <int dim>
@@ -138,7 +143,7 @@ StructureMesh<dim>::number_nodes()
 
   this->exchange      = ColumnExchange(owned, ghosts, triangulation.get_communicator());
   const auto &indices = *this->exchange.indices();
-  hanging_nodes.clear();
+  this->hanging_nodes.clear();
   for (const auto node : needed)
     if (constraints.is_constrained(node))
       {
@@ -151,7 +156,7 @@ StructureMesh<dim>::number_nodes()
                   [&indices](const auto &a, const auto &b) {
                     return indices.local_to_global(a.first) < indices.local_to_global(b.first);
                   });
-        hanging_nodes.push_back(hanging);
+        this->hanging_nodes.push_back(hanging);
       }
   number_elements();
 }
@@ -161,7 +166,6 @@ void
 StructureMesh<dim>::number_elements()
 {
   const auto &indices = *this->exchange.indices();
-  const auto  faces   = outward_faces<dim>();
   // Parents that are corners of no element here get their positions from their owners.
   Columns positions(dim);
   positions.resize(this->n_nodes());
@@ -169,39 +173,56 @@ StructureMesh<dim>::number_elements()
   this->facets.clear();
   active_cell_index.clear();
   element_keys.clear();
+  levels.clear();
 
-  std::vector<dealii::types::global_dof_index> cell_nodes(nodes_per_element);
+  std::vector<typename dealii::DoFHandler<dim>::active_cell_iterator> cells;
   for (const auto &cell : dof_handler.active_cell_iterators())
     if (cell->is_locally_owned())
-      {
-        cell->get_dof_indices(cell_nodes);
-        auto &element = elements.emplace_back();
-        for (unsigned int v = 0; v < nodes_per_element; ++v)
-          {
-            element[v] = indices.global_to_local(cell_nodes[v]);
-            for (int d = 0; d < dim; ++d)
-              positions[d][element[v]] = cell->vertex(v)[d];
-          }
-        active_cell_index.push_back(cell->active_cell_index());
-        element_keys.push_back(element_key(cell));
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary())
-            {
-              BoundaryFacet<dim> facet{{},
-                                       n_elements() - 1,
-                                       cell->face(f)->boundary_id(),
-                                       facet_key(cell, f)};
-              for (unsigned int v = 0; v < facet.n_nodes; ++v)
-                facet.nodes[v] = element[faces[f][v]];
-              this->facets.push_back(facet);
-            }
-      }
+      cells.push_back(cell);
+  std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
+    return a->id() < b->id();
+  });
+  std::vector<dealii::types::global_dof_index> cell_nodes(nodes_per_element);
+  for (const auto &cell : cells)
+    {
+      cell->get_dof_indices(cell_nodes);
+      auto &element = elements.emplace_back();
+      for (unsigned int v = 0; v < nodes_per_element; ++v)
+        {
+          element[v] = indices.global_to_local(cell_nodes[v]);
+          for (int d = 0; d < dim; ++d)
+            positions[d][element[v]] = cell->vertex(v)[d];
+        }
+      active_cell_index.push_back(cell->active_cell_index());
+      element_keys.push_back(element_key(cell));
+      levels.push_back(cell->level());
+      add_facets(cell);
+    }
 
   this->exchange.update_ghosts(positions, 0, dim);
   this->nodes.resize(this->n_nodes());
   for (unsigned int n = 0; n < this->n_nodes(); ++n)
     for (int d = 0; d < dim; ++d)
       this->nodes[n][d] = positions[d][n];
+}
+
+// Of the last element.
+template <int dim>
+void
+StructureMesh<dim>::add_facets(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell)
+{
+  const auto faces = outward_faces<dim>();
+  for (const unsigned int f : cell->face_indices())
+    if (cell->face(f)->at_boundary())
+      {
+        BoundaryFacet<dim> facet{{},
+                                 n_elements() - 1,
+                                 cell->face(f)->boundary_id(),
+                                 facet_key(cell, f)};
+        for (unsigned int v = 0; v < facet.n_nodes; ++v)
+          facet.nodes[v] = elements.back()[faces[f][v]];
+        this->facets.push_back(facet);
+      }
 }
 
 template class StructureMesh<2>;

@@ -197,19 +197,16 @@ Elements<dim>::add_rounded_forces(Columns &nodes) const
 }
 
 template <int dim>
+template <typename Material>
 void
-Elements<dim>::update(Columns &nodes, const double dt)
+Elements<dim>::update_with(const Material &m, Columns &nodes, const double dt)
 {
   constexpr unsigned int first = NodeColumns<dim>::internal;
   for (unsigned int d = 0; d < dim; ++d)
     std::fill_n(nodes[first + d], nodes.size(), 0.);
 
   internal::Limits limits;
-  std::visit(
-    [&](const auto &m) {
-      internal::update_elements<dim>(m, integration == Integration::full, nodes, dt, data, limits);
-    },
-    material);
+  internal::update_elements<dim>(m, integration == Integration::full, nodes, dt, data, limits);
   if (data.apart)
     add_rounded_forces(nodes);
 
@@ -221,6 +218,13 @@ Elements<dim>::update(Columns &nodes, const double dt)
         report_failure(nodes);
     }
   stable_step = (rate > 0 ? 1. / rate : std::numeric_limits<double>::infinity());
+}
+
+template <int dim>
+void
+Elements<dim>::update(Columns &nodes, const double dt)
+{
+  std::visit([&](const auto &m) { update_with(m, nodes, dt); }, material);
 }
 
 template <int dim>
@@ -288,6 +292,104 @@ Elements<dim>::serialize(Archive &archive, const std::vector<std::uint64_t> &key
       data.columns.get_row(n_elements - 1, last.data());
       data.columns.set_row(i, last.data());
     }
+}
+
+template <int dim>
+Columns
+Elements<dim>::rows() const
+{
+  Columns result = data.columns;
+  result.resize(n_elements);
+  return result;
+}
+
+template <int dim>
+void
+Elements<dim>::child_row(const double *parent, const unsigned int child, double *row) const
+{
+  std::copy_n(parent, data.columns.n_columns(), row);
+  // The mode's amplitude is a quarter (of the last one in 3-D an eighth), and in 3-D the stiffness
+  // of springs is half.
+  constexpr int n_modes = n_hourglass_modes<dim>;
+  for (int j = 0; j < dim; ++j)
+    for (int m = 0; m < n_modes; ++m)
+      row[Data::hourglass + j * n_modes + m] *= (dim == 2 ? 0.25 : m < 3 ? 0.125 : 0.0625);
+  row[Data::energy] = parent[Data::energy] / (dim == 2 ? 16 : 32);
+  if (integration == Integration::one_point)
+    return;
+  // Point q of the part, in coordinates in which the points of the whole are at -1 and 1.
+  constexpr double root    = 1.7320508075688772935;
+  const auto       weights = [&](const unsigned int q, const unsigned int p) {
+    double weight = 1;
+    for (int d = 0; d < dim; ++d)
+      {
+        const double x =
+          0.5 * (((child >> d) & 1) == 0 ? -root : root) + 0.5 * (((q >> d) & 1) == 0 ? -1. : 1.);
+        weight *= 0.5 * (1 + (((p >> d) & 1) == 0 ? -x : x));
+      }
+    return weight;
+  };
+  const unsigned int n_values = data.stress(1) - data.stress(0);
+  for (unsigned int q = 0; q < n_nodes; ++q)
+    for (unsigned int c = 0; c < n_values; ++c)
+      {
+        // From one of the points on, so that what is the same at all of them stays so exactly.
+        const double first = parent[data.stress(0) + c];
+        double       sum   = first;
+        for (unsigned int p = 0; p < n_nodes; ++p)
+          sum += weights(q, p) * (parent[data.stress(p) + c] - first);
+        row[data.stress(q) + c] = sum;
+      }
+}
+
+template <int dim>
+void
+Elements<dim>::reinit(const StructureMesh<dim> &mesh, const Columns &carried)
+{
+  n_elements      = mesh.n_elements();
+  data.n_elements = n_elements;
+  allocate(mesh);
+  std::vector<double> row(data.columns.n_columns());
+  for (unsigned int i = 0; i < data.n_packs * pack_size; ++i)
+    {
+      carried.get_row(std::min(i, n_elements - 1), row.data());
+      data.columns.set_row(i, row.data());
+    }
+  compute_reference(mesh);
+  if (data.apart)
+    make_reproducible(communicator);
+}
+
+template <int dim>
+void
+Elements<dim>::hold(Columns &nodes, const double dt)
+{
+  // Springs of one-point elements remember too where they are in rate form.
+  const bool from_motion = std::visit(
+    [this](const auto &m) {
+      using Material = std::decay_t<decltype(m)>;
+      return !Material::remembers_stress &&
+             (integration == Integration::full || Material::needs_deformation_gradient);
+    },
+    material);
+  if (from_motion)
+    return update(nodes, dt);
+  // Nothing is to be added to springs.
+  Columns kept(dim);
+  kept.resize(nodes.size());
+  for (unsigned int d = 0; d < dim; ++d)
+    {
+      double *const increment = nodes[NodeColumns<dim>::increment + d];
+      std::copy_n(increment, nodes.size(), kept[d]);
+      std::fill_n(increment, nodes.size(), 0.);
+    }
+  std::visit(
+    [&](const auto &m) {
+      update_with(internal::HeldStress<std::decay_t<decltype(m)>>{m}, nodes, dt);
+    },
+    material);
+  for (unsigned int d = 0; d < dim; ++d)
+    std::copy_n(kept[d], nodes.size(), nodes[NodeColumns<dim>::increment + d]);
 }
 
 template class Elements<2>;

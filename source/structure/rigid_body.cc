@@ -32,11 +32,11 @@ RigidBody<dim>::read_shape(const Parameters &section, MPI_Comm comm)
   const std::string type = section.choice("Type");
   if (std::find(sheet_types.begin(), sheet_types.end(), type) != sheet_types.end())
     {
-      auto       mesh      = std::make_unique<const SheetMesh<dim>>(section, comm);
+      auto       mesh      = std::make_unique<SheetMesh<dim>>(section, comm);
       const auto integrals = sheet_integrals(*mesh);
       return {std::move(mesh), integrals};
     }
-  auto       mesh      = std::make_unique<const StructureMesh<dim>>(section, comm);
+  auto       mesh      = std::make_unique<StructureMesh<dim>>(section, comm);
   const auto integrals = volume_integrals(*mesh);
   return {std::move(mesh), integrals};
 }
@@ -310,10 +310,43 @@ RigidBody<dim>::summary() const
 }
 
 template <int dim>
+bool
+RigidBody<dim>::refine(const std::vector<bool> &wanted)
+{
+  // Only owners know it.
+  this->mesh().exchange.update_ghosts(this->node_columns, Node::contact_force, dim);
+  Columns           no_elements;
+  CarriedState<dim> state{this->node_columns, no_elements, {}};
+  if (!dynamic_cast<StructureMesh<dim> &>(*this->body_mesh).refine(wanted, state))
+    return false;
+  this->find_surface_nodes();
+  for (int d = 0; d < dim; ++d)
+    for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+      if (state.is_new_node[n])
+        this->node_columns[Node::contact_force + d][n] = 0;
+  return true;
+}
+
+template <int dim>
+unsigned int
+RigidBody<dim>::n_mesh_changes() const
+{
+  const auto *const mesh = dynamic_cast<const StructureMesh<dim> *>(&this->mesh());
+  return mesh == nullptr ? 0 : mesh->n_changes();
+}
+
+template <int dim>
 void
 RigidBody<dim>::serialize(Archive &archive)
 {
   const Archive::Section section(archive, "body " + this->name());
+  if (auto *const mesh = dynamic_cast<StructureMesh<dim> *>(this->body_mesh.get()))
+    if (this->serialize_mesh(archive, *mesh))
+      {
+        this->node_columns = Columns(Node::n_columns);
+        this->node_columns.resize(mesh->n_nodes());
+        this->find_surface_nodes();
+      }
   this->serialize_nodes(archive, {});
   archive.same("centre", body_centre);
   archive.same("velocity", body_velocity);

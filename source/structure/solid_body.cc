@@ -48,8 +48,8 @@ SolidBody<dim>::SolidBody(const Parameters      &body,
                           const Vector          &gravity,
                           MPI_Comm               comm,
                           const bool             reproducible)
-  : StructuralBody<dim>(body,
-                        std::make_unique<const StructureMesh<dim>>(body.section("Mesh"), comm))
+  : StructuralBody<dim>(body, std::make_unique<StructureMesh<dim>>(body.section("Mesh"), comm))
+  , section(body)
   , touches_itself(body.flag("Self contact"))
   , reproducible(reproducible)
   , elements(mesh(),
@@ -105,6 +105,7 @@ void
 SolidBody<dim>::set_mass()
 {
   Columns &nodes = this->node_columns;
+  std::fill_n(nodes[Node::mass], nodes.size(), 0.);
   elements.add_mass(nodes[Node::mass], mesh(), sum_grid(elements.largest_mass()));
   condense(Node::mass, 1);
   mesh().exchange.sum_to_owners(nodes, Node::mass, 1);
@@ -130,6 +131,7 @@ SolidBody<dim>::find_contact_nodes()
 {
   // A rank may own a node of the surface without owning a facet of it; the column is free yet.
   Columns &nodes = this->node_columns;
+  contact_nodes.clear();
   for (const unsigned int n : this->surface_nodes())
     nodes[Node::impulse][n] = 1;
   condense(Node::impulse, 1);
@@ -146,6 +148,7 @@ template <int dim>
 void
 SolidBody<dim>::contact_through_volume()
 {
+  is_met_in_volume = true;
   contact_nodes.resize(this->mesh().n_owned_nodes());
   std::iota(contact_nodes.begin(), contact_nodes.end(), 0u);
 }
@@ -429,7 +432,9 @@ template <int dim>
 void
 SolidBody<dim>::serialize(Archive &archive)
 {
-  const Archive::Section section(archive, "body " + this->name());
+  const Archive::Section part(archive, "body " + this->name());
+  if (this->serialize_mesh(archive, changing_mesh()))
+    make_room();
   this->serialize_nodes(archive, {Node::internal, dim});
   elements.serialize(archive, mesh().element_keys);
   archive.same("time", time);

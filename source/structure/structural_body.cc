@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <deal.II/base/mpi.templates.h>
+
 #include <coracle/structure/structural_body.h>
 
 #include <algorithm>
@@ -20,8 +22,8 @@ StructuralBody<dim>::declare_surface(Declaration &section)
 }
 
 template <int dim>
-StructuralBody<dim>::StructuralBody(const Parameters                    &body,
-                                    std::unique_ptr<const BodyMesh<dim>> mesh_of_body)
+StructuralBody<dim>::StructuralBody(const Parameters              &body,
+                                    std::unique_ptr<BodyMesh<dim>> mesh_of_body)
   : body_name(body.name())
   , body_mesh(std::move(mesh_of_body))
   , node_columns(NodeColumns<dim>::n_columns)
@@ -35,11 +37,26 @@ StructuralBody<dim>::StructuralBody(const Parameters                    &body,
       set_vector(NodeColumns<dim>::reference, n, mesh.nodes[n]);
       set_vector(NodeColumns<dim>::position, n, mesh.nodes[n]);
     }
-  for (const auto &facet : mesh.facets)
-    nodes_on_surface.insert(nodes_on_surface.end(), facet.nodes.begin(), facet.nodes.end());
-  std::sort(nodes_on_surface.begin(), nodes_on_surface.end());
-  nodes_on_surface.erase(std::unique(nodes_on_surface.begin(), nodes_on_surface.end()),
-                         nodes_on_surface.end());
+  find_surface_nodes();
+}
+
+template <int dim>
+void
+StructuralBody<dim>::find_surface_nodes()
+{
+  std::vector<bool> is_there(body_mesh->n_nodes());
+  for (const auto &facet : body_mesh->facets)
+    for (const unsigned int node : facet.nodes)
+      is_there[node] = true;
+  std::vector<bool> with_parents = is_there;
+  for (const HangingNode &hanging : body_mesh->hanging_nodes)
+    if (is_there[hanging.node])
+      for (const auto &[parent, weight] : hanging.parents)
+        with_parents[parent] = true;
+  nodes_on_surface.clear();
+  for (unsigned int node = 0; node < body_mesh->n_nodes(); ++node)
+    if (with_parents[node])
+      nodes_on_surface.push_back(node);
 }
 
 template <int dim>
@@ -50,6 +67,23 @@ StructuralBody<dim>::serialize_nodes(Archive &archive, const Archive::Summed &su
   for (unsigned int n = 0; n < body_mesh->n_nodes(); ++n)
     keys.push_back(body_mesh->key(n));
   archive.keyed("nodes", keys, body_mesh->n_owned_nodes(), node_columns, summed);
+}
+
+template <int dim>
+bool
+StructuralBody<dim>::serialize_mesh(Archive &archive, StructureMesh<dim> &mesh)
+{
+  std::vector<std::uint64_t> keys = mesh.element_keys;
+  archive.all("element_keys", keys);
+  if (!archive.loads())
+    return false;
+  // As many ranks as have saved get each its own.
+  std::vector<std::uint64_t> all_keys;
+  for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.communicator(), keys))
+    all_keys.insert(all_keys.end(), of_rank.begin(), of_rank.end());
+  const unsigned int before = mesh.n_changes();
+  mesh.refine_to(all_keys);
+  return mesh.n_changes() > before;
 }
 
 template class StructuralBody<2>;

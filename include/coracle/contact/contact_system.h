@@ -71,8 +71,13 @@ public:
 
   ContactSystem(const ContactOptions &options, MPI_Comm communicator);
 
-  /// Facets or nodes have come, gone or been renumbered: search anew at the next find().
-  void surface_changed() { changed = true; }
+  /// Facets or nodes have come, gone or been renumbered: search anew at the next find(), and do not
+  /// start from impulses of what had these numbers.
+  void surface_changed()
+  {
+    changed = true;
+    solver.forget_impulses();
+  }
   /// Points have come, gone or been renumbered: search anew at the next find().
   void points_renumbered() { changed = true; }
 

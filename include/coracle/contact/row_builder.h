@@ -70,7 +70,7 @@ private:
 
   /// One more entry of the present side, or more weight on one that it has.
   void add(const unsigned int unknown, const double weight);
-  /// The same for a node of the surface.
+  /// The same for a node of the surface; those that it hangs on, if it does.
   void add_node(const Surface<dim> &surface, const unsigned int index, const double weight);
   void add_facet_side(const Contact<dim> &contact, const Surface<dim> &surface);
 

@@ -78,6 +78,9 @@ public:
   /// What the impulses make of the predicted velocities.
   Velocities<dim> velocities() const;
 
+  /// The next solve starts from nothing.
+  void forget_impulses() { warm_start.store({}, {}); }
+
   /// What one step hands to the next.
   void serialize(Archive &archive)
   {

@@ -55,6 +55,11 @@ struct SurfaceNode
   std::uint64_t key = 0;
   /// Rank that owns it.
   int owner = 0;
+  /// Indices into Surface::nodes of the ends of the edge that it is the middle of and moves with
+  /// (3-D, next to a larger facet), or -1: it moves by itself.
+  std::array<int, 2> parents{{-1, -1}};
+
+  bool hangs() const { return parents[0] >= 0; }
 };
 
 template <int dim>

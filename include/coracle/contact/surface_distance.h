@@ -32,10 +32,18 @@ public:
                   const double              limit,
                   const std::vector<bool>  &counts) const;
 
+  /// Notes the facets of the bodies that count which are nearer to a place than `limit`.
+  void
+  note_near(const dealii::Point<dim> &place, const double limit, const std::vector<bool> &counts);
+  /// Collective. Which nodes of the surface given to reinit() are corners of facets that any rank
+  /// has noted.
+  std::vector<bool> noted_nodes(const std::size_t n_owned_nodes) const;
+
 private:
   FacetExchange<dim>                exchange;
   BoxTree                           tree;
   std::vector<Box>                  boxes;
   mutable std::vector<unsigned int> found;
+  std::vector<bool>                 noted;
 };
 } // namespace coracle::contact

@@ -3,6 +3,8 @@
 
 #include <coracle/contact/nearest_point.h>
 
+#include <unordered_map>
+
 namespace coracle::contact
 {
 /// Corners of a facet: 2 in 2-D, 3 or 4 in 3-D (a triangle repeats its last node).
@@ -18,7 +20,9 @@ n_corners(const Facet<dim> &facet)
 
 /**
  * Which facets meet at a node, and what follows from it: whether a point of an
- * edge or vertex is a minimum for all facets there, and the pseudonormal.
+ * edge or vertex is a minimum for all facets there, and the pseudonormal. Where a
+ * node hangs (3-D), the edge of the larger facet and its halves, which smaller facets
+ * have, are one edge.
  */
 template <int dim>
 class SurfaceTopology
@@ -64,8 +68,44 @@ private:
     return surface->nodes[node].position;
   }
 
+  /// A facet at an edge: the corner that the edge starts from there, and a position along it.
+  struct AtEdge
+  {
+    unsigned int facet, corner;
+    double       s;
+  };
+  static constexpr unsigned int none = -1;
+
+  /// Node that hangs in the middle of an edge, or none.
+  unsigned int middle_of(const unsigned int a, const unsigned int b) const;
+  /// Calls action(AtEdge) for the facets with exactly this edge, at s along it from a to b.
+  template <typename Action>
+  void
+  on_edge(const unsigned int a, const unsigned int b, const double s, const Action &action) const;
+  /// For all facets at the edge of `nearest`, also larger and smaller ones.
+  template <typename Action>
+  void
+  at_edge(const unsigned int facet, const NearestPoint<dim> &nearest, const Action &action) const;
+  /// For the larger facets in the middle of whose edge a node hangs.
+  template <typename Action>
+  void                   at_middle(const unsigned int node, const Action &action) const;
+  dealii::Tensor<1, dim> inward(const AtEdge &at) const;
+  Pseudonormal normal_inside(const unsigned int facet, const NearestPoint<dim> &nearest) const;
+  Pseudonormal normal_at_vertex(const unsigned int node, const unsigned int body) const;
+
   const Surface<dim>       *surface = nullptr;
   std::vector<unsigned int> begin;
   std::vector<unsigned int> facets;
+  /// Hanging nodes by the ends of their edges, the lower one first.
+  std::unordered_map<std::uint64_t, unsigned int> middles;
 };
+
+template <>
+typename SurfaceTopology<2>::Pseudonormal
+SurfaceTopology<2>::pseudonormal(const unsigned int, const NearestPoint<2> &) const;
+template <>
+typename SurfaceTopology<3>::Pseudonormal
+SurfaceTopology<3>::pseudonormal(const unsigned int, const NearestPoint<3> &) const;
+template <>
+dealii::Tensor<1, 3> SurfaceTopology<3>::inward(const AtEdge &) const;
 } // namespace coracle::contact

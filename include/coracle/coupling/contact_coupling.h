@@ -39,6 +39,9 @@ public:
   /// The octree has new leaves and nodes. Collective.
   void octree_changed(const MaterialPointSystem<dim> &points);
 
+  /// Meshes of structures have new elements and nodes. Collective.
+  void structure_changed(StructureSystem<dim> &structure);
+
   /// What contact did in the leaves of this rank since the octree changed or this was last
   /// forgotten.
   const LeafContacts &leaf_contacts() const { return in_leaves; }

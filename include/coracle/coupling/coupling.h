@@ -4,6 +4,7 @@
 #include <coracle/base/timer.h>
 #include <coracle/coupling/adaptivity.h>
 #include <coracle/coupling/meshless_system.h>
+#include <coracle/coupling/structure_adaptivity.h>
 
 namespace coracle
 {
@@ -54,6 +55,7 @@ public:
   MeshlessSystem<dim>        fluids;
   ContactCoupling<dim>       contacts;
   Adaptivity<dim>            adaptivity;
+  StructureAdaptivity<dim>   structure_adaptivity;
   TimingTable                timed;
   /// At the start.
   typename ContactCoupling<dim>::Projected projected;

@@ -63,6 +63,8 @@ public:
   /// The octree has new leaves and nodes: what is kept by their numbers starts afresh, particles go
   /// to their new owners. Between steps; collective.
   void octree_changed();
+  /// Surfaces of structures have new facets and nodes.
+  void structure_changed() { sides.octree_changed(); }
   /// Particles have come and gone: they go to their owners and are sorted. Collective.
   void redistribute_particles();
   /// Kinetic energy that splitting and merging took on this rank becomes internal [J]. Collective.

@@ -28,6 +28,10 @@ public:
   /// No points where there is nothing to meet, or where structures shall not meet. Collective.
   StructurePoints(const bool wanted, StructureSystem<dim> &structure, MPI_Comm comm);
 
+  /// The surface has other facets and nodes. Which sides of sheets they are on is found anew, and
+  /// the distances stay as they are. Collective.
+  void structure_changed(StructureSystem<dim> &structure);
+
   unsigned int n_sets() const { return parts.size(); }
 
   /// One set for each body with points, with positions and predicted velocities as they are now.

@@ -39,6 +39,8 @@ public:
 
   /// The first thing that went wrong in update_stresses on this rank, see MaterialPointSystem.
   std::optional<RunFailure> failure;
+  /// On any rank? Collective.
+  bool has_failed() const;
 
   /// The facets this rank owns, nodes at their places with their predicted velocities.
   const contact::Surface<dim> &publish_surface();
@@ -67,8 +69,13 @@ public:
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
-  /// Between steps.
-  void serialize(Archive &archive);
+  /// Between steps: halves elements of some bodies, by body (solids first) and element; none given
+  /// for a body: it stays. True if anything has changed, then the surface is another one.
+  /// Collective; throws RunFailure, on all ranks.
+  bool refine(const std::vector<std::vector<bool>> &wanted);
+
+  /// Between steps. Collective. True if meshes have changed since the start of the case.
+  bool serialize(Archive &archive);
 
   /// Elements of deformable bodies on this rank.
   unsigned int n_elements() const
@@ -101,8 +108,6 @@ public:
   {
     return body < first_node.size() ? first_node[body] : surface.nodes.size();
   }
-  /// Of a deformable body, and on an edge or face of a larger neighbour.
-  bool is_hanging(const unsigned int surface_node) const { return hanging[surface_node]; }
 
   bool empty() const { return solids.empty() && rigids.empty(); }
 
@@ -124,7 +129,6 @@ private:
   contact::Surface<dim>               surface;
   std::vector<unsigned int>           first_node, body_of_surface;
   unsigned int                        sheets = 0;
-  std::vector<bool>                   hanging;
   std::vector<dealii::Tensor<1, dim>> received;
 };
 } // namespace coracle

@@ -51,6 +51,7 @@ private:
                                      const double                               time);
   void               write_octree(const Coupling<dim> &coupling);
   void               add_bodies(Report<dim> &report, Coupling<dim> &coupling);
+  void               follow_meshes(Coupling<dim> &coupling);
   void               make_probes(const Parameters &root, Coupling<dim> &coupling);
   static EnergyBooks energies(const Coupling<dim> &coupling);
 
@@ -62,8 +63,10 @@ private:
   std::vector<MeshOutput>                                  structures;
   std::unique_ptr<MeshOutput>                              octree;
   std::vector<std::pair<std::string, BodyPointProbe<dim>>> body_probes;
-  std::vector<std::pair<std::string, PointProbe<dim>>>     point_probes;
-  EnergyBalance                                            balance;
+  /// Of all meshes together when probes looked for their nodes.
+  unsigned int                                         mesh_changes = 0;
+  std::vector<std::pair<std::string, PointProbe<dim>>> point_probes;
+  EnergyBalance                                        balance;
   /// Per body (solids, rigids, material points): momentum from contact at the last report [N s].
   std::vector<dealii::Tensor<1, dim>> reported_momentum;
   std::vector<dealii::Tensor<1, dim>> reported_force;

@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
 
+#include <coracle/base/archive.h>
 #include <coracle/base/parameters.h>
 #include <coracle/io/field.h>
 #include <coracle/io/statistics.h>
@@ -66,10 +67,17 @@ template <int dim>
 class BodyPointProbe
 {
 public:
-  /// Finds the node. Collective. Repeat it when nodes were renumbered or shared out anew.
+  /// Finds the node. Collective.
   BodyPointProbe(const ProbeDescription<dim> &description,
                  const NodeView              &nodes,
                  MPI_Comm                     communicator);
+
+  const std::string &name() const { return prefix; }
+
+  /// Which node it was at the start of the run; find_again() follows.
+  void serialize(Archive &archive) { archive.same("place", place); }
+  /// Finds the same node again when nodes were renumbered or shared out anew. Collective.
+  void find_again(const NodeView &nodes) { find(nodes, place); }
 
   static void add_columns(const ProbeDescription<dim> &description, Statistics &statistics);
   /// Collective.
@@ -80,10 +88,14 @@ public:
   std::uint64_t key() const { return found_key; }
 
 private:
-  std::string   prefix;
-  MPI_Comm      comm;
-  double        found_distance = 0;
-  std::uint64_t found_key      = 0;
+  /// The node nearest to a point of the reference configuration, and where it is there.
+  void find(const NodeView &nodes, const dealii::Point<dim> &near);
+
+  std::string        prefix;
+  MPI_Comm           comm;
+  dealii::Point<dim> place;
+  double             found_distance = 0;
+  std::uint64_t      found_key      = 0;
   /// Index of the node where it is owned, -1 on other ranks.
   std::int64_t local_node = -1;
 };

@@ -96,6 +96,7 @@ struct Report
   std::uint64_t particles_created = 0, particles_removed = 0, particles_converted = 0;
   std::uint64_t particles_split = 0, particles_merged = 0; ///< more and fewer by that
   std::uint64_t cells     = 0;                             ///< of the octree
+  std::uint64_t elements  = 0;                             ///< and facets of sheets, of structures
   double        imbalance = 1; ///< work of the busiest rank over the mean
   /// Particle-steps done so far, for the rate shown.
   double                       particle_steps = 0;

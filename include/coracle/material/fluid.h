@@ -33,6 +33,7 @@ public:
   static constexpr const char *description                = EquationOfState::description;
   static constexpr bool        isotropic_stress           = !viscous;
   static constexpr bool        needs_deformation_gradient = false;
+  static constexpr bool        remembers_stress           = false;
   static constexpr int         n_history                  = 0;
 
   static void declare(Declaration &declaration)

@@ -30,6 +30,7 @@ public:
   static constexpr const char *description      = "isotropic solid, small strain, large rotation";
   static constexpr bool        isotropic_stress = false;
   static constexpr bool        needs_deformation_gradient = false;
+  static constexpr bool        remembers_stress           = true;
   static constexpr int         n_history                  = 0;
 
   static void declare(Declaration &declaration) { ElasticConstants::declare(declaration); }

@@ -31,12 +31,13 @@ struct Motion
  *   static constexpr const char *name, *description;
  *   static constexpr bool isotropic_stress;            // stress is -p I: a particle keeps only p
  *   static constexpr bool needs_deformation_gradient;
- *   static constexpr int  n_history;                   // doubles a point keeps besides the stress
- *   static void declare(Declaration &);
- *   static bool accepts(const Parameters &);   // is this the variant that these entries of the
- * model ask for? explicit Material(const Parameters &); double reference_density() const; template
- * <typename T> T sound_speed(const T &density) const;       // for the stable step double
- * diffusivity() const;   // of momentum [m^2/s], for the stable step of viscous flow
+ *   static constexpr bool remembers_stress;            // the new stress depends on the old one, or
+ * on history static constexpr int  n_history;                   // doubles a point keeps besides
+ * the stress static void declare(Declaration &); static bool accepts(const Parameters &);   // is
+ * this the variant that these entries of the model ask for? explicit Material(const Parameters &);
+ * double reference_density() const; template <typename T> T sound_speed(const T &density) const; //
+ * for the stable step double diffusivity() const;   // of momentum [m^2/s], for the stable step of
+ * viscous flow
  *
  *   // Cauchy stress [Pa], tension positive: in the value at the start of the step, out at its end.
  *   template <int dim, typename T>

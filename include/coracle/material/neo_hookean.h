@@ -25,6 +25,7 @@ public:
   static constexpr const char *description                = "isotropic solid, large elastic strain";
   static constexpr bool        isotropic_stress           = false;
   static constexpr bool        needs_deformation_gradient = true;
+  static constexpr bool        remembers_stress           = false;
   static constexpr int         n_history                  = 0;
 
   static void declare(Declaration &declaration) { ElasticConstants::declare(declaration); }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace coracle
@@ -27,6 +28,13 @@ struct BoundaryFacet
   std::uint64_t key;
   /// Number of the sheet it belongs to, see sheet_patches.h; 0 for boundaries of elements.
   unsigned int sheet = 0;
+};
+
+/// A node on an edge or face of a larger neighbour: it moves as the mean of its parents.
+struct HangingNode
+{
+  unsigned int                                 node;
+  std::vector<std::pair<unsigned int, double>> parents;
 };
 
 /**
@@ -69,5 +77,7 @@ public:
   std::vector<dealii::Point<dim>> nodes;
   /// Surface of this rank's cells.
   std::vector<BoundaryFacet<dim>> facets;
+  /// Of owned elements; none in a mesh without local refinement.
+  std::vector<HangingNode> hanging_nodes;
 };
 } // namespace coracle

@@ -8,16 +8,26 @@
 #include <coracle/base/parameters.h>
 #include <coracle/mesh/body_mesh.h>
 
+#include <functional>
 #include <utility>
 #include <vector>
 
 namespace coracle
 {
-/// A node on an edge or face of a larger neighbour: it moves as the mean of its parents.
-struct HangingNode
+/// What refinement carries from a mesh to the next one, and what it tells of that.
+template <int dim>
+struct CarriedState
 {
-  unsigned int                                 node;
-  std::vector<std::pair<unsigned int, double>> parents;
+  /// One row for each local node: new nodes get the mean of the nodes around them, on an edge, in a
+  /// face or in an element; the others keep theirs, bit by bit. All ranks know all they have.
+  Columns &nodes;
+  /// One row for each element.
+  Columns &elements;
+  /// Row of a part of an element; bit b of `child` tells its side in direction b.
+  std::function<void(const double *parent, const unsigned int child, double *row)> child_row;
+
+  /// Afterwards: which elements are parts of one that was there before, and which nodes are new.
+  std::vector<bool> is_child = {}, is_new_node = {};
 };
 
 /**
@@ -26,7 +36,9 @@ struct HangingNode
  *
  * Kept in a parallel::distributed::Triangulation: every rank stores the whole
  * coarse mesh (about 1 kB an element), refined elements are distributed. Node
- * numbers are those of FE_Q(1). A rank may have no elements and no nodes.
+ * numbers are those of FE_Q(1). A rank may have no elements and no nodes. Elements
+ * are numbered along the forest's curve, so that the numbers do not depend on how
+ * the mesh has come about.
  */
 template <int dim>
 class StructureMesh : public BodyMesh<dim>
@@ -42,6 +54,28 @@ public:
   StructureMesh(const dealii::Triangulation<dim> &coarse,
                 MPI_Comm                          comm,
                 const unsigned int                n_refinements = 0);
+
+  /**
+   * Halves the elements asked for in all directions, and others so that neighbours differ by one
+   * level at most; then shares the elements out evenly. Parts of elements fill them exactly, as
+   * shape functions say, so that the surface stays where it is. Collective.
+   *
+   * @param wanted by element
+   * @return has anything changed, on any rank?
+   */
+  bool refine(const std::vector<bool> &wanted, CarriedState<dim> &state);
+
+  /// Refines until each of the elements has one of the keys, of any rank's elements; the positions
+  /// of nodes are those of the mesh as it was. Collective.
+  void refine_to(const std::vector<std::uint64_t> &keys);
+
+  /// How often the mesh has changed since it was made.
+  unsigned int n_changes() const { return changes; }
+
+  /// How often an element has been halved since the coarse mesh.
+  unsigned int level(const unsigned int element) const { return levels[element]; }
+  /// No element may be halved more often.
+  static constexpr unsigned int deepest_level = 11;
 
   unsigned int  n_elements() const { return elements.size(); }
   std::uint64_t n_global_elements() const override { return triangulation.n_global_active_cells(); }
@@ -64,14 +98,20 @@ public:
   std::vector<std::uint64_t> element_keys;
   /// Each element's number among the active cells, for cell data in output.
   std::vector<unsigned int> active_cell_index;
-  /// Of owned elements; none in a mesh without local refinement.
-  std::vector<HangingNode> hanging_nodes;
 
 private:
+  class Carrier;
+
   void refine_region(const Parameters &section);
   /// Fill everything from the triangulation as it is.
   void number_nodes();
   void number_elements();
+  void add_facets(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell);
+  /// Vertices of this rank's cells become the nodes, also where refinement has put them elsewhere.
+  void move_vertices();
+
+  unsigned int              changes = 0;
+  std::vector<unsigned int> levels;
 };
 
 extern template class StructureMesh<2>;

@@ -17,7 +17,8 @@ namespace coracle
 struct Energies
 {
   double kinetic = 0;
-  /// Work done on the material: stored, and what plasticity or viscosity took.
+  /// Work done on the material: stored, and what plasticity or viscosity took; and what
+  /// refinement of the mesh took of the kinetic energy.
   double strain = 0;
   /// Work done on the springs of one-point elements.
   double hourglass = 0;

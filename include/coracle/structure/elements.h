@@ -52,6 +52,23 @@ public:
            const Integration         integration,
            const double              hourglass_coefficient);
 
+  /// Rows of the elements (as many as there are), to be carried to another mesh.
+  Columns rows() const;
+  /**
+   * Row of one of the 2^dim parts of an element. Stress and history at its points are those that
+   * vary linearly in each direction through the points of the whole, so that constant and linear
+   * stresses stay as they are; with one point they are the whole's, and springs against hourglasses
+   * have what is left of the whole's modes.
+   */
+  void child_row(const double *parent, const unsigned int child, double *row) const;
+  /// The elements of another mesh, with what has been carried there; update() or hold() follows.
+  void reinit(const StructureMesh<dim> &mesh, const Columns &rows);
+  /**
+   * Internal forces and stable step where nothing has moved since the last step of length dt:
+   * stresses that are functions of the motion are computed anew, others stay. Throws as update().
+   */
+  void hold(Columns &nodes, const double dt);
+
   /// Forces are rounded from now on so that their sums on the nodes do not depend on the order and
   /// on the ranks; update() is then collective.
   void make_reproducible(MPI_Comm communicator);
@@ -61,6 +78,7 @@ public:
   void add_mass(double *nodal_mass, const StructureMesh<dim> &mesh, const SumGrid &grid) const;
   /// Of one element on this rank [kg].
   double largest_mass() const;
+  double mass(const unsigned int element) const { return data.columns[Data::mass][element]; }
 
   /**
    * Stress and internal force at the end of a step from position and
@@ -115,7 +133,9 @@ public:
   };
 
 private:
-  void              allocate(const StructureMesh<dim> &mesh);
+  void allocate(const StructureMesh<dim> &mesh);
+  template <typename Material>
+  void              update_with(const Material &material, Columns &nodes, const double dt);
   void              compute_reference(const StructureMesh<dim> &mesh);
   void              add_rounded_forces(Columns &nodes) const;
   [[noreturn]] void report_failure(const Columns &nodes) const;

@@ -67,6 +67,11 @@ public:
   /// Throws RunFailure, on all ranks, where the motion is not a number.
   void update_stress(const double);
 
+  /// Halves elements of a mesh that is none of sheets, see SolidBody::refine: the surface gets more
+  /// facets and nodes, the body stays what it is. Collective.
+  bool         refine(const std::vector<bool> &wanted);
+  unsigned int n_mesh_changes() const;
+
   Energies         energies() const;
   BodySummary<dim> summary() const;
 
@@ -96,8 +101,8 @@ private:
   /// The mesh that the section `Mesh` describes, and its integrals.
   struct Shape
   {
-    std::unique_ptr<const BodyMesh<dim>> mesh;
-    VolumeIntegrals<dim>                 integrals;
+    std::unique_ptr<BodyMesh<dim>> mesh;
+    VolumeIntegrals<dim>           integrals;
   };
   static Shape read_shape(const Parameters &mesh, MPI_Comm comm);
   RigidBody(const Parameters &body, const Vector &gravity, Shape &&shape);

@@ -81,6 +81,25 @@ public:
   /// only.
   void update_stress(const double dt);
 
+  /**
+   * Between steps: halves elements (see StructureMesh::refine). Nothing moves, and what is new
+   * moves with the elements that it is in; the whole mass and momentum stay, also the angular
+   * momentum where nodes are free; the kinetic energy that this takes goes into the books as
+   * strain. Collective; throws RunFailure, on all ranks.
+   *
+   * @param wanted by element of mesh()
+   * @return has anything changed?
+   */
+  bool refine(const std::vector<bool> &wanted);
+
+  /// How often the mesh has changed since the start of the case.
+  unsigned int n_mesh_changes() const { return mesh().n_changes(); }
+
+  /// Of each element: how far its mean stress is from what means over the elements at its nodes
+  /// give for it, a norm [Pa]. Collective. Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 24
+  /// (1987) 337, with lumped means.
+  std::vector<double> stress_jumps() const;
+
   void serialize(Archive &archive);
 
   /// Collective sums.
@@ -105,6 +124,28 @@ public:
 private:
   using Node = NodeColumns<dim>;
 
+  /// Momentum, angular momentum about the origin, kinetic energy. Collective.
+  struct Motion
+  {
+    Vector               momentum;
+    dealii::Tensor<1, 3> angular_momentum;
+    double               kinetic = 0;
+  };
+  Motion motion() const;
+  /// All that is made from the mesh.
+  void follow_mesh(const CarriedState<dim> &state);
+  /// The same, for a state that is loaded next.
+  void make_room();
+  /// Gives the nodes of refined elements the momentum that is missing, as the least change of their
+  /// velocities, a rigid motion.
+  void                restore_motion(const Motion &before, const CarriedState<dim> &state);
+  std::vector<double> rigid_change(const std::vector<unsigned int> &nodes, const Motion &missing);
+
+  StructureMesh<dim> &changing_mesh()
+  {
+    return static_cast<StructureMesh<dim> &>(*this->body_mesh);
+  }
+
   void   set_mass();
   void   find_contact_nodes();
   void   kick(const double duration, const double dt);
@@ -118,6 +159,7 @@ private:
   /// Ghosts as their owners, then hanging nodes as the mean of their parents.
   void distribute(const unsigned int first_column);
 
+  const Parameters        section;
   const bool              touches_itself, reproducible;
   Elements<dim>           elements;
   BoundaryConditions<dim> boundary_conditions;
@@ -129,7 +171,7 @@ private:
   double time = 0, last_dt = 0, kick_duration = 0;
   /// Owned nodes that contact may touch, also through hanging nodes.
   std::vector<unsigned int> contact_nodes;
-  bool                      is_corrected = false;
+  bool                      is_corrected = false, is_met_in_volume = false;
   /// This rank's part of all books but `kinetic` and `hourglass`; strain includes hourglass.
   Energies books;
 };

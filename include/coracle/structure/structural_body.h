@@ -4,7 +4,7 @@
 #include <coracle/base/archive.h>
 #include <coracle/base/columns.h>
 #include <coracle/base/parameters.h>
-#include <coracle/mesh/body_mesh.h>
+#include <coracle/mesh/structure_mesh.h>
 #include <coracle/structure/body_state.h>
 #include <coracle/structure/node_columns.h>
 
@@ -32,7 +32,7 @@ public:
 
   /// Facets of this rank's surface, see mesh/body_mesh.h for their orientation.
   const std::vector<BoundaryFacet<dim>> &facets() const { return body_mesh->facets; }
-  /// Local numbers of the nodes of facets(), each once.
+  /// Local numbers of the nodes of facets() and of those that they hang on, each once.
   const std::vector<unsigned int> &surface_nodes() const { return nodes_on_surface; }
   /// Thickness of the contact surface d [m], and Coulomb friction coefficient [1].
   double thickness() const { return surface_thickness; }
@@ -70,8 +70,13 @@ protected:
   /// Entries of the surface, besides the section `Mesh`.
   static void declare_surface(Declaration &body_section);
   /// Nodes are at their reference positions.
-  StructuralBody(const Parameters &body, std::unique_ptr<const BodyMesh<dim>> mesh);
+  StructuralBody(const Parameters &body, std::unique_ptr<BodyMesh<dim>> mesh);
+  /// After the mesh has changed.
+  void find_surface_nodes();
 
+  /// Saves which elements there are, or refines the mesh until it has those. Collective.
+  /// @return has the mesh been changed?
+  static bool serialize_mesh(Archive &archive, StructureMesh<dim> &mesh);
   /// @param summed columns to which each rank has added what its elements give
   void serialize_nodes(Archive &archive, const Archive::Summed &summed);
 
@@ -93,9 +98,9 @@ protected:
       node_columns[first_column + d][node] = value[d];
   }
 
-  std::string                          body_name;
-  std::unique_ptr<const BodyMesh<dim>> body_mesh;
-  Columns                              node_columns;
+  std::string                    body_name;
+  std::unique_ptr<BodyMesh<dim>> body_mesh;
+  Columns                        node_columns;
 
 private:
   std::vector<unsigned int> nodes_on_surface;

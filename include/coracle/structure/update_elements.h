@@ -6,6 +6,25 @@
 
 namespace coracle::internal
 {
+/// A material whose stress stays as it is: for forces of a stress that is known.
+template <typename Material>
+struct HeldStress
+{
+  static constexpr bool needs_deformation_gradient = Material::needs_deformation_gradient;
+  static constexpr int  n_history                  = Material::n_history;
+  const Material       &material;
+
+  double diffusivity() const { return material.diffusivity(); }
+  template <typename T>
+  T sound_speed(const T &density) const
+  {
+    return material.sound_speed(density);
+  }
+  template <int dim, typename T>
+  void update(const Motion<dim, T> &, Symmetric<dim, T> &, T *) const
+  {}
+};
+
 /// All packs of a body with one material; the loops of the structure are here.
 template <int dim, typename Material>
 void

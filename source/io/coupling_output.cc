@@ -123,23 +123,29 @@ template <int dim>
 void
 CouplingOutput<dim>::make_probes(const Parameters &root, Coupling<dim> &coupling)
 {
-  std::vector<std::string> structure_names, particle_names;
+  std::vector<std::string> structure_names, particle_names, fluid_names;
   for_each_structure(coupling.structure, [&](const StructuralBody<dim> &body) {
     structure_names.push_back(body.name());
   });
   for (const auto &body : coupling.points.bodies)
     particle_names.push_back(body.name());
   for (const auto &body : coupling.fluids.bodies)
-    particle_names.push_back(body.name());
+    fluid_names.push_back(body.name());
+  particle_names.insert(particle_names.end(), fluid_names.begin(), fluid_names.end());
   std::vector<std::uint64_t> keys;
-  for (const auto &description :
-       ProbeDescription<dim>::read(root.section("Probes"), structure_names, particle_names))
+  for (const auto &description : ProbeDescription<dim>::read(
+         root.section("Probes"), structure_names, particle_names, fluid_names))
     if (description.kind == ProbeKind::body_point)
       {
         const auto *const body = find_structure(coupling.structure, description.body);
         body_probes.emplace_back(description.body,
                                  BodyPointProbe<dim>(description, node_view(*body, keys), comm));
         BodyPointProbe<dim>::add_columns(description, statistics);
+      }
+    else if (description.kind == ProbeKind::surface)
+      {
+        gauges.emplace_back(description, comm);
+        SurfaceGauge<dim>::add_columns(description, statistics);
       }
     else
       {
@@ -438,6 +444,9 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   std::vector<std::uint64_t> keys;
   for (const auto &[body, probe] : body_probes)
     probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);
+  // A case has one meshless fluid.
+  for (const auto &gauge : gauges)
+    gauge.set_columns(coupling.fluids.bodies.front(), statistics);
   for (const auto &[name, probe] : point_probes)
     for (const auto &body : coupling.fluids.bodies)
       if (body.name() == name)

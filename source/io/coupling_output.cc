@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/io/body_views.h>
 #include <coracle/io/coupling_output.h>
 #include <coracle/io/rotation_columns.h>
 
@@ -9,20 +10,6 @@ namespace
 {
 template <int dim>
 using Layout = ParticleLayout<dim>;
-
-/// n neighbouring columns as one field.
-Field
-columns_field(const std::string &name,
-              const std::string &unit,
-              const Columns     &columns,
-              const unsigned int first,
-              const unsigned int n)
-{
-  Field field{name, unit, {}, 1, false};
-  for (unsigned int i = 0; i < n; ++i)
-    field.components.push_back(columns[first + i]);
-  return field;
-}
 
 // Particles without holes: copies are made only if there are any.
 template <int dim>
@@ -35,23 +22,6 @@ rows_present(const MaterialPoints<dim> &points)
     if (!points.is_hole(row))
       rows.push_back(row);
   return rows;
-}
-
-template <int dim>
-NodeView
-node_view(const StructuralBody<dim> &body, std::vector<std::uint64_t> &keys)
-{
-  using Node = NodeColumns<dim>;
-  NodeView view;
-  view.n_nodes   = body.mesh().n_owned_nodes();
-  view.reference = columns_field("reference", "m", body.nodes(), Node::reference, dim);
-  view.current   = columns_field("position", "m", body.nodes(), Node::position, dim);
-  view.velocity  = columns_field("velocity", "m/s", body.nodes(), Node::velocity, dim);
-  keys.clear();
-  for (unsigned int node = 0; node < view.n_nodes; ++node)
-    keys.push_back(body.key(node));
-  view.keys = keys.data();
-  return view;
 }
 
 template <int dim, typename Action>
@@ -455,26 +425,10 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
     for (const auto &body : coupling.points.bodies)
       if (body.name() == name)
         {
-          const auto         &points = body.points;
           std::vector<double> pressure;
-          ParticleView        view;
-          view.n_particles = points.n_rows();
-          view.position =
-            columns_field("position", "m", points.columns, Layout<dim>::position, dim);
-          view.velocity =
-            columns_field("velocity", "m/s", points.columns, Layout<dim>::velocity, dim);
-          view.mass     = points.column(Layout<dim>::mass);
-          view.pressure = points.column(Layout<dim>::stress);
-          if (points.layout().n_stress > 1)
-            {
-              for (std::size_t row = 0; row < points.n_rows(); ++row)
-                pressure.push_back(-(points.column(Layout<dim>::stress)[row] +
-                                     points.column(Layout<dim>::stress + 1)[row] +
-                                     points.column(Layout<dim>::stress + 2)[row]) /
-                                   3.);
-              view.pressure = pressure.data();
-            }
-          probe.set_columns(view, statistics, points.reproducible);
+          probe.set_columns(particle_view(body.points, pressure),
+                            statistics,
+                            body.points.reproducible);
         }
   statistics.end_row();
 }

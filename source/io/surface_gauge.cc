@@ -80,10 +80,14 @@ SurfaceGauge<dim>::set_columns(const meshless::Fluid<dim> &fluid, Statistics &st
   double       highest = -std::numeric_limits<double>::infinity();
   for (const auto &facet : fluid.mesh.boundary_facet)
     {
+      // Beside a periodic face the facet may be there by its image.
+      const Point<dim> &first = fluid.points.position[facet[0]];
+      const auto        shift =
+        fluid.period.nearest(first - description.position) - (first - description.position);
       Projection<dim> projection;
       for (unsigned int i = 0; i < dim; ++i)
         {
-          const Point<dim> &x = fluid.points.position[facet[i]];
+          const Point<dim> x  = fluid.points.position[facet[i]] + shift;
           projection.along[i] = sign * x[up];
           for (unsigned int d = 0, k = 0; d < dim; ++d)
             if (d != up)

@@ -53,8 +53,8 @@ Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
   check_numbers();
 }
 
-// Elements halfway along the motion known so far. Connections stay, so that the pattern and, where
-// elements have changed little, the preconditioner of the first iteration serve them all.
+// Elements halfway along the motion known so far. Connections stay, so that the pattern and, in the
+// plane, the preconditioner of the first iteration serve them all.
 template <int dim>
 void
 Fluid<dim>::move_elements(const double dt, const unsigned int iteration, TimingTable &timed)
@@ -258,7 +258,8 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
             surface[i] += options.density / theta * area[d] * area[d] * node.inverse_mass[d];
       }
   timed("matrix", [&] { pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure); });
-  if (iteration == 0)
+  // In space flat elements change so much between iterations that the old one does not fit.
+  if (iteration == 0 || dim == 3)
     timed("multigrid", [&] {
       pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
     });

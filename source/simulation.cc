@@ -9,6 +9,7 @@
 #include <coracle/simulation.h>
 
 #include <iomanip>
+#include <memory>
 #include <sstream>
 
 namespace coracle
@@ -38,13 +39,14 @@ public:
     , directory_path(OutputDirectory::choose(root.section("Output"), options.file))
     , checkpoints(directory_path, comm)
     , from(options.restart ? find_checkpoint() : std::optional<CheckpointFolder::Saved>())
-    , coupling(root, comm, from ? octree_of(*from) : "")
+    , saved(from ? std::make_unique<SavedState>(*from, comm) : nullptr)
+    , coupling(root, comm, saved ? &saved->archive : nullptr)
   {}
 
   int check()
   {
     if (from)
-      load_checkpoint<dim>(*from, coupling, nullptr);
+      load_checkpoint<dim>(*saved, coupling, nullptr);
     Progress progress(log.out(), end_time);
     progress.header("check of " + options.file + ": no mistakes found", facts());
     return 0;
@@ -67,7 +69,8 @@ public:
     directory.write_parameters(file.print());
     CouplingOutput<dim> output(root, settings, directory, coupling);
     if (from)
-      load_checkpoint(*from, coupling, &output);
+      load_checkpoint(*saved, coupling, &output);
+    saved.reset();
     Progress progress(log.out(), end_time);
     progress.header(options.file, facts());
     RunControl control(saving, directory.path(), comm);
@@ -308,7 +311,9 @@ private:
   CheckpointFolder     checkpoints;
   /// What the run goes on from.
   const std::optional<CheckpointFolder::Saved> from;
-  Coupling<dim>                                coupling;
+  /// Open until it is loaded.
+  std::unique_ptr<SavedState> saved;
+  Coupling<dim>               coupling;
 };
 
 template <int dim>

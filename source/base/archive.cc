@@ -18,6 +18,12 @@ does_not_fit(const std::string &name, const std::string &why)
 } // namespace
 
 void
+Archive::throw_not_of_a_piece(const std::string &name) const
+{
+  throw does_not_fit(path + name, "its parts do not belong together");
+}
+
+void
 Archive::put(const std::string &name, const Block &block, const void *const values)
 {
   store.put(path + name, block, values);
@@ -62,6 +68,39 @@ Archive::load_columns(const unsigned int part, const std::string &name, Columns 
     std::copy_n(bytes.data() + c * n * sizeof(double),
                 n * sizeof(double),
                 reinterpret_cast<char *>(columns[c] + first));
+}
+
+void
+Archive::in_order(const std::string &name, std::vector<int> &values, const unsigned int n_together)
+{
+  if (is_exact())
+    return same(name, values);
+  // Parts are read twice, so that none has to hold the whole list.
+  std::vector<int>         part;
+  std::vector<std::size_t> ends;
+  for (unsigned int p = 0; p < store.n_parts(); ++p)
+    {
+      load(p, name, part);
+      ends.push_back((p > 0 ? ends.back() : 0) + part.size());
+    }
+  if (ends.back() % n_together != 0)
+    throw_not_of_a_piece(name);
+  const std::size_t n     = ends.back() / n_together;
+  const std::size_t begin = n * rank / n_ranks * n_together,
+                    end   = n * (rank + 1) / n_ranks * n_together;
+  values.clear();
+  for (unsigned int p = 0; p < store.n_parts(); ++p)
+    {
+      const std::size_t first = (p > 0 ? ends[p - 1] : 0);
+      if (ends[p] <= begin || first >= end)
+        continue;
+      load(p, name, part);
+      if (part.size() != ends[p] - first)
+        throw_not_of_a_piece(name);
+      values.insert(values.end(),
+                    part.begin() + (std::max(begin, first) - first),
+                    part.begin() + (std::min(end, ends[p]) - first));
+    }
 }
 
 void
@@ -128,6 +167,8 @@ Archive::load_by_key(const std::string                &name,
       load(part, "n_owned", n_saved_owned);
       Columns saved(columns.n_columns());
       load_columns(part, "values", saved);
+      if (saved.size() < saved_keys.size())
+        throw_not_of_a_piece(name);
       for (unsigned int from = 0; from < saved_keys.size(); ++from)
         {
           const auto found = row_of_key.find(saved_keys[from]);

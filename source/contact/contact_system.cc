@@ -177,7 +177,10 @@ ContactSystem<dim>::find(const Surface<dim>               &owned,
     motion.radius = 0;
   const double travel = motion.travel();
   ++steps_since_change;
-  if (extremes.changed > 0 || used + extremes.movement + travel > reach)
+  // Points that are nodes have moved as these have.
+  const bool   has_nodes = !points.empty() && points.back().body >= 0;
+  const double gone      = std::max(used, has_nodes ? extremes.movement : 0.);
+  if (extremes.changed > 0 || gone + extremes.movement + travel > reach)
     rebuild(owned, points, extremes, travel);
   else
     facets.update(owned);
@@ -373,70 +376,6 @@ ContactSystem<dim>::surface_impulses(std::vector<Vector> &impulse,
       }
   facets.add_to_owners(nodal_impulse, impulse);
   facets.add_to_owners(nodal_correction, correction);
-}
-
-// Candidates are all that can be met only if nothing moves farther than they were looked for.
-template <int dim>
-void
-ContactSystem<dim>::limit_travel(const Surface<dim>                        &owned,
-                                 const std::vector<PointSet<dim>>          &points,
-                                 const typename ContinuousCheck<dim>::Ends &ends)
-{
-  double square = 0;
-  for (unsigned int i = 0; i < owned.nodes.size(); ++i)
-    square = std::max(square, owned.nodes[i].position.distance_square(positions_at_search[i]));
-  MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_MAX, communicator);
-  const double limit = std::max(0., reach - used_before - std::sqrt(square));
-
-  double farthest = 0;
-  for (unsigned int s = 0; s < points.size(); ++s)
-    for (unsigned int i = 0; ends[s][0] != nullptr && i < points[s].n_points; ++i)
-      {
-        double way = 0;
-        for (int d = 0; d < dim; ++d)
-          way +=
-            (ends[s][d][i] - points[s].position[d][i]) * (ends[s][d][i] - points[s].position[d][i]);
-        if (way <= farthest || points[s].is_hole(i))
-          continue;
-        if (way > limit * limit)
-          {
-            const double part = limit / std::sqrt(way);
-            for (int d = 0; d < dim; ++d)
-              ends[s][d][i] =
-                points[s].position[d][i] + part * (ends[s][d][i] - points[s].position[d][i]);
-            way = limit * limit;
-            ++statistics.n_held;
-          }
-        farthest = std::max(farthest, way);
-      }
-  farthest = std::sqrt(farthest);
-  MPI_Allreduce(MPI_IN_PLACE, &farthest, 1, MPI_DOUBLE, MPI_MAX, communicator);
-  used = std::max(used, used_before + farthest);
-}
-
-template <int dim>
-void
-ContactSystem<dim>::resolve_in_time(const Surface<dim>                        &owned,
-                                    const std::vector<PointSet<dim>>          &points,
-                                    const typename ContinuousCheck<dim>::Ends &ends)
-{
-  // The papers' methods stay as they are.
-  if (options.law != Law::split || options.local_search != LocalMethod::nearest_on_surface ||
-      !options.continuous_check)
-    return;
-  facets.update(owned);
-  limit_travel(owned, points, ends);
-  std::vector<const Candidates *> candidate_lists;
-  for (unsigned int s = 0; s < points.size(); ++s)
-    candidate_lists.push_back(&search.candidates(s));
-  const auto    report = in_time.resolve(surface(), points, candidate_lists, list, ends);
-  unsigned long n[2]   = {report.n_resolved, report.n_failed};
-  MPI_Allreduce(MPI_IN_PLACE, n, 2, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
-  statistics.n_resolved += n[0];
-  statistics.n_failed += n[1];
-  statistics.largest_shift = report.largest_shift;
-  MPI_Allreduce(MPI_IN_PLACE, &statistics.largest_shift, 1, MPI_DOUBLE, MPI_MAX, communicator);
-  used += statistics.largest_shift;
 }
 
 template <int dim>

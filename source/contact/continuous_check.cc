@@ -227,8 +227,8 @@ ContinuousCheck<dim>::keep_free(const dealii::Point<dim> &begin, dealii::Point<d
         {
           if (!first_meeting(begin, end, meeting, which))
             return true;
-          planes.push_back(plane_at_end(near[which], meeting));
-          planes.push_back(plane_on_the_way(near[which], meeting, begin));
+          planes.push_back(within_reach(plane_at_end(near[which], meeting), wanted));
+          planes.push_back(within_reach(plane_on_the_way(near[which], meeting, begin), wanted));
           // The more, the longer it takes.
           const double more = (growth - 2) * near[which].clearance;
           for (unsigned int k = planes.size() - 2; k < planes.size(); ++k)
@@ -241,6 +241,9 @@ ContinuousCheck<dim>::keep_free(const dealii::Point<dim> &begin, dealii::Point<d
   for (const double part : {0.9, 0.5, 0.})
     {
       end = carried(near[first_which], begin, wanted, part * first.time);
+      for (int d = 0; d < dim; ++d)
+        if (fixed[d])
+          end[d] = wanted[d];
       if (!first_meeting(begin, end, meeting, which))
         return true;
     }
@@ -248,14 +251,28 @@ ContinuousCheck<dim>::keep_free(const dealii::Point<dim> &begin, dealii::Point<d
 }
 
 template <int dim>
-typename ContinuousCheck<dim>::Report
-ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
-                              const std::vector<PointSet<dim>>      &points,
-                              const std::vector<const Candidates *> &candidates,
-                              const std::vector<Contact<dim>>       &contacts,
-                              const Ends                            &ends)
+bool
+ContinuousCheck<dim>::find_free_end(const Surface<dim>       &surface,
+                                    const dealii::Point<dim> &begin,
+                                    dealii::Point<dim>       &end,
+                                    const PointOfSet         &point)
 {
-  Report report;
+  const auto wanted = end;
+  bool       free   = true;
+  near.clear();
+  // An end that has been changed may be near to other facets.
+  while (collect(surface, begin, end, point))
+    {
+      end  = wanted;
+      free = keep_free(begin, end);
+    }
+  return free;
+}
+
+template <int dim>
+void
+ContinuousCheck<dim>::find_extents(const Surface<dim> &surface)
+{
   extents.resize(surface.facets.size());
   for (unsigned int f = 0; f < extents.size(); ++f)
     for (int d = 0; d < dim; ++d)
@@ -269,32 +286,55 @@ ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
             upper = std::max({upper, a, b});
           }
       }
+}
 
+template <int dim>
+typename ContinuousCheck<dim>::Vector
+ContinuousCheck<dim>::look_at_contacts(const Surface<dim>    &surface,
+                                       const unsigned int     set,
+                                       const unsigned int     point,
+                                       ContactIterator       &contact,
+                                       const ContactIterator &end)
+{
+  passed.assign(surface.bodies.size(), 0);
+  while (contact != end && (contact->set < set || (contact->set == set && contact->point < point)))
+    ++contact;
+  Vector outward;
+  for (; contact != end && contact->set == set && contact->point == point; ++contact)
+    {
+      const double size = size_of(contact->facet);
+      if (contact->gap < -on_surface * size)
+        passed[surface.facets[contact->facet].body] = 1;
+      else if (contact->gap < on_surface * size)
+        outward = contact->normal;
+    }
+  return outward;
+}
+
+template <int dim>
+typename ContinuousCheck<dim>::Report
+ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
+                              const std::vector<PointSet<dim>>      &points,
+                              const std::vector<const Candidates *> &candidates,
+                              const std::vector<Contact<dim>>       &contacts,
+                              const Ends                            &ends)
+{
+  Report report;
+  if (std::all_of(ends.begin(), ends.end(), [](const auto &end) { return end[0] == nullptr; }))
+    return report;
+  find_extents(surface);
+  fixed.fill(false);
   auto contact = contacts.begin();
   for (unsigned int s = 0; s < points.size(); ++s)
     for (std::size_t i = 0; ends[s][0] != nullptr && i < candidates[s]->point.size(); ++i)
       {
-        const unsigned int p     = candidates[s]->point[i];
+        const unsigned int p       = candidates[s]->point[i];
+        const Vector       outward = look_at_contacts(surface, s, p, contact, contacts.end());
+        if (points[s].is_hole(p))
+          continue;
         dealii::Point<dim> begin = points[s].point(p), end;
         for (int d = 0; d < dim; ++d)
           end[d] = ends[s][d][p];
-
-        passed.assign(surface.bodies.size(), 0);
-        while (contact != contacts.end() &&
-               (contact->set < s || (contact->set == s && contact->point < p)))
-          ++contact;
-        Vector outward;
-        for (; contact != contacts.end() && contact->set == s && contact->point == p; ++contact)
-          {
-            const double size = size_of(contact->facet);
-            if (contact->gap < -on_surface * size)
-              passed[surface.facets[contact->facet].body] = 1;
-            else if (contact->gap < on_surface * size)
-              outward = contact->normal;
-          }
-        if (points[s].is_hole(p))
-          continue;
-
         const unsigned int *facets = candidates[s]->facet.data();
         const PointOfSet    point  = {facets + candidates[s]->begin[i],
                                       facets + candidates[s]->begin[i + 1],
@@ -302,14 +342,7 @@ ContinuousCheck<dim>::resolve(const Surface<dim>                    &surface,
         if (outward.norm_square() > 0)
           begin += way_off_surface(surface, begin, point) * outward;
         const auto wanted = end;
-        bool       free   = true;
-        near.clear();
-        // An end that has been changed may be near to other facets.
-        while (collect(surface, begin, end, point))
-          {
-            end  = wanted;
-            free = keep_free(begin, end);
-          }
+        const bool free   = find_free_end(surface, begin, end, point);
         if (free && end == wanted)
           continue;
         ++report.n_resolved;

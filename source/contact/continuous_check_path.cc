@@ -292,6 +292,14 @@ template bool            ContinuousCheck<2>::certainly_apart(const dealii::Point
 template bool            ContinuousCheck<3>::certainly_apart(const dealii::Point<3> &,
                                                   const dealii::Point<3> &,
                                                   const Near &);
+template bool            ContinuousCheck<2>::meets(const dealii::Point<2> &,
+                                        const dealii::Point<2> &,
+                                        const Near &,
+                                        Meeting &);
+template bool            ContinuousCheck<3>::meets(const dealii::Point<3> &,
+                                        const dealii::Point<3> &,
+                                        const Near &,
+                                        Meeting &);
 template bool            ContinuousCheck<2>::first_meeting(const dealii::Point<2> &,
                                                 const dealii::Point<2> &,
                                                 Meeting &,

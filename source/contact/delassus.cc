@@ -237,8 +237,11 @@ Delassus<dim>::set_rows(const std::vector<Contact<dim>>      &contacts,
   share_rigid_bodies(rigid);
   inverse_mass.resize(unknowns.size());
   predicted.nodes.resize(unknowns.size());
+  shared_list.clear();
   for (unsigned int i = 0; i < unknowns.size(); ++i)
     {
+      if (multiplicity(i) > 1)
+        shared_list.push_back(i);
       inverse_mass[i]    = double(multiplicity(i)) * to_lanes<dim>(unknowns[i].inverse_mass);
       predicted.nodes[i] = to_lanes<dim>(unknowns[i].velocity);
     }
@@ -271,6 +274,20 @@ Delassus<dim>::set_zero(LaneVelocities<dim> &v) const
   v.nodes.assign(predicted.nodes.size(), Lanes<dim>{});
   v.rigid.assign(predicted.rigid.size(), Vector());
   v.spin.assign(predicted.spin.size(), dealii::Tensor<1, 3>());
+}
+
+template <int dim>
+void
+Delassus<dim>::copy_shared(const LaneVelocities<dim>       &v,
+                           const std::vector<unsigned int> &nodes,
+                           LaneVelocities<dim>             &before) const
+{
+  if (blocks == nullptr && n_ranks(communicator) == 1)
+    return;
+  for (const unsigned int i : nodes)
+    before.nodes[i] = v.nodes[i];
+  before.rigid = v.rigid;
+  before.spin  = v.spin;
 }
 
 template <int dim>

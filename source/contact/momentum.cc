@@ -15,14 +15,11 @@ constexpr double       rest_growth = 1.5, rest_part = 0.1;
 /// a += theta * (a - last), and last becomes what a was.
 template <typename Value>
 void
-move_on(const double theta, std::vector<Value> &a, std::vector<Value> &last)
+move_on(const double theta, Value &a, Value &last)
 {
-  for (std::size_t i = 0; i < a.size(); ++i)
-    {
-      const Value now = a[i];
-      a[i] += theta * (now - last[i]);
-      last[i] = now;
-    }
+  const Value now = a;
+  a += theta * (now - last);
+  last = now;
 }
 
 /// last += sign * a.
@@ -50,24 +47,27 @@ Momentum<dim>::restart(const std::vector<Lanes<dim>> &impulses, const LaneVeloci
 
 template <int dim>
 double
-Momentum<dim>::turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>> &impulses) const
+Momentum<dim>::turn(const Delassus<dim>             &delassus,
+                    const std::vector<unsigned int> &contacts,
+                    const std::vector<Lanes<dim>>   &impulses) const
 {
   double      result = 0;
   const auto &rows   = delassus.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c)
+  for (const unsigned int c : contacts)
     result += rows[c].normal_inverse_mass * dot<dim>(start[c] - impulses[c], impulses[c] - last[c]);
   return result;
 }
 
 template <int dim>
 double
-Momentum<dim>::turn_of_all(const Delassus<dim>           &delassus,
-                           const std::vector<Lanes<dim>> &impulses,
-                           MPI_Comm                       communicator) const
+Momentum<dim>::turn_of_all(const Delassus<dim>             &delassus,
+                           const std::vector<unsigned int> &contacts,
+                           const std::vector<Lanes<dim>>   &impulses,
+                           MPI_Comm                         communicator) const
 {
   std::vector<double> terms;
   const auto         &rows = delassus.rows();
-  for (std::size_t c = 0; c < rows.size(); ++c)
+  for (const unsigned int c : contacts)
     terms.push_back(rows[c].normal_inverse_mass *
                     dot<dim>(start[c] - impulses[c], impulses[c] - last[c]));
   return exact_sum(terms, communicator);
@@ -75,22 +75,25 @@ Momentum<dim>::turn_of_all(const Delassus<dim>           &delassus,
 
 template <int dim>
 void
-Momentum<dim>::advance(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v)
+Momentum<dim>::advance(const bool                 turned,
+                       const ActiveContacts<dim> &active,
+                       std::vector<Lanes<dim>>   &impulses,
+                       LaneVelocities<dim>       &v)
 {
   ++iteration;
-  const bool resting = iteration <= rest_end;
+  const bool was_resting = iteration <= rest_end;
   if (iteration == rest_begin)
     {
       make_relative(-1, impulses, v);
       rest_end   = iteration + static_cast<unsigned int>(rest_part * iteration);
       rest_begin = rest_end + static_cast<unsigned int>((rest_growth - 1) * iteration);
     }
-  if (iteration < rest_end)
+  if (resting())
     return;
-  if (resting)
+  if (was_resting)
     make_relative(1, impulses, v);
   // Directions before and after a rest cannot be compared.
-  extrapolate(turned && !resting, impulses, v);
+  extrapolate(turned && !was_resting, active, impulses, v);
 }
 
 template <int dim>
@@ -107,18 +110,46 @@ Momentum<dim>::make_relative(const double                   sign,
 
 template <int dim>
 void
-Momentum<dim>::extrapolate(const bool               turned,
-                           std::vector<Lanes<dim>> &impulses,
-                           LaneVelocities<dim>     &v)
+Momentum<dim>::extrapolate(const bool                 turned,
+                           const ActiveContacts<dim> &active,
+                           std::vector<Lanes<dim>>   &impulses,
+                           LaneVelocities<dim>       &v)
 {
   const double next  = (turned ? 1. : 0.5 * (1 + std::sqrt(1 + 4 * t * t))),
                theta = (turned ? 0. : (t - 1) / next);
   t                  = next;
-  move_on(theta, impulses, last);
-  move_on(theta, v.nodes, last_velocity.nodes);
-  move_on(theta, v.rigid, last_velocity.rigid);
-  move_on(theta, v.spin, last_velocity.spin);
-  start = impulses;
+  for (const unsigned int c : active.contacts())
+    {
+      move_on(theta, impulses[c], last[c]);
+      start[c] = impulses[c];
+    }
+  for (const unsigned int i : active.nodes())
+    move_on(theta, v.nodes[i], last_velocity.nodes[i]);
+  for (unsigned int b = 0; b < v.rigid.size(); ++b)
+    {
+      move_on(theta, v.rigid[b], last_velocity.rigid[b]);
+      move_on(theta, v.spin[b], last_velocity.spin[b]);
+    }
+}
+
+template <int dim>
+void
+Momentum<dim>::stop(Delassus<dim>                   &delassus,
+                    const std::vector<unsigned int> &contacts,
+                    const std::vector<Lanes<dim>>   &impulses,
+                    LaneVelocities<dim>             &before)
+{
+  delassus.copy_shared(last_velocity, delassus.shared_nodes(), before);
+  for (const unsigned int c : contacts)
+    {
+      const Lanes<dim> d = direction(c, impulses);
+      if (dot<dim>(d, d) > 0)
+        delassus.apply(delassus.rows()[c], d, last_velocity);
+      last[c]  = (resting() ? Lanes<dim>{} : impulses[c]);
+      start[c] = impulses[c];
+    }
+  double unused = 0;
+  delassus.synchronise(last_velocity, before, unused);
 }
 
 template class Momentum<2>;

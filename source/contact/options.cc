@@ -84,8 +84,8 @@ declare_laws(Declaration &section)
   section.when("Law", "split")
     .flag("Continuous check",
           true,
-          "Follow particles through the step and change the ends of paths that would come too near "
-          "to a surface, or through it");
+          "Follow particles and nodes of structures through the step and change the ends of paths "
+          "that would come too near to a surface, or through it");
 }
 } // namespace
 

@@ -294,7 +294,11 @@ ContactCoupling<dim>::resolve_in_time(MaterialPointSystem<dim> &points,
         ends[s][d] = body.points.column(Layout<dim>::next_position + d);
       ++s;
     }
-  system.resolve_in_time(structure.publish_surface(), sets, ends);
+  system.resolve_in_time(structure.publish_surface(), sets, ends, [&](const auto &changes) {
+    const bool any = structure.change_ends(changes);
+    structure.publish_surface();
+    return any;
+  });
 }
 
 template <int dim>

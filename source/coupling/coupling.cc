@@ -121,12 +121,12 @@ Coupling<dim>::declare(Declaration &root)
 }
 
 template <int dim>
-Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree)
+Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, Archive *saved_octree)
   : options(CouplingOptions<dim>::read(root))
   , materials(root)
   , structure(root, materials, options.gravity, options.reproducible, comm)
   , points(root, materials, options.gravity, met_surfaces(root), comm, saved_octree)
-  , fluids(root, options.gravity, points.octree, structure, saved_octree.empty())
+  , fluids(root, options.gravity, points.octree, structure, saved_octree == nullptr)
   , contacts(contact::ContactOptions(root.section("Contact"), options.reproducible),
              points,
              structure,
@@ -136,7 +136,7 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, const std::string
 {
   if (options.reproducible)
     points.make_reproducible();
-  if (saved_octree.empty())
+  if (saved_octree == nullptr)
     {
       projected = contacts.resolve_initial_overlaps(root, points, structure);
       adaptivity.initialise(points, structure, contacts);

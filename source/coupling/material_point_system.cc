@@ -40,7 +40,7 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
                                               const dealii::Tensor<1, dim> &gravity,
                                               const MetSurfaces            &met,
                                               MPI_Comm                      comm,
-                                              const std::string            &saved_octree)
+                                              Archive                      *saved_octree)
   : octree(OctreeDescription<dim>::read(root.section("Grid")),
            particle_weight<dim>(root.section("Bodies")),
            comm,
@@ -53,7 +53,7 @@ MaterialPointSystem<dim>::MaterialPointSystem(const Parameters             &root
   const Parameters section = root.section("Bodies");
   for (const std::string &name : section.section_names())
     if (section.section(name).choice("Kind") == "material points")
-      bodies.emplace_back(section.section(name), materials, octree, met, saved_octree.empty());
+      bodies.emplace_back(section.section(name), materials, octree, met, saved_octree == nullptr);
   make_fields();
   for (auto &body : bodies)
     energy.kinetic += body.points.kinetic_energy();

@@ -244,6 +244,31 @@ StructureSystem<dim>::apply_contact(
 }
 
 template <int dim>
+bool
+StructureSystem<dim>::change_ends(const contact::EndChanges<dim> &changes)
+{
+  bool result = false;
+  for_each_surface([&](auto &body, const unsigned int index) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(body)>, RigidBody<dim>>)
+      {
+        const double part = changes.rigid_part[index - solids.size()];
+        result            = (part < 1 && body.shorten_step(part)) || result;
+      }
+    else
+      {
+        unsigned int i = first_node[index];
+        for (const unsigned int local : body.surface_nodes())
+          {
+            body.add_end_change(local, changes.shift[i], changes.count[i]);
+            ++i;
+          }
+        result = body.apply_end_changes(changes.held_part) || result;
+      }
+  });
+  return result;
+}
+
+template <int dim>
 void
 StructureSystem<dim>::apply_node_impulses(
   const std::vector<std::vector<dealii::Tensor<1, dim>>> &impulse)

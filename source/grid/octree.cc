@@ -11,7 +11,6 @@
 #include <coracle/base/mpi.h>
 #include <coracle/grid/octree.h>
 
-#include <fstream>
 #include <map>
 
 namespace coracle
@@ -19,8 +18,8 @@ namespace coracle
 template <int dim>
 Octree<dim>::Octree(const OctreeDescription<dim> &description,
                     const std::function<double(const dealii::Point<dim> &, const double)> &weight,
-                    MPI_Comm           communicator,
-                    const std::string &saved)
+                    MPI_Comm communicator,
+                    Archive *saved)
   : triangulation(communicator,
                   dealii::Triangulation<dim>::none,
                   dealii::parallel::distributed::Triangulation<dim>::default_setting)
@@ -29,11 +28,11 @@ Octree<dim>::Octree(const OctreeDescription<dim> &description,
   , fe(1)
 {
   make_coarse_grid();
-  if (saved.empty())
+  if (saved == nullptr)
     refine();
   else
-    load(saved);
-  if (weight && saved.empty())
+    load(*saved);
+  if (weight && saved == nullptr)
     partition(weight);
   number();
 }
@@ -94,43 +93,6 @@ Octree<dim>::refine()
       if (changed)
         triangulation.execute_coarsening_and_refinement();
     }
-}
-
-// Triangulation::load(file) shares the leaves out anew; here they stay with their ranks if there
-// are as many.
-template <int dim>
-void
-Octree<dim>::load(const std::string &file)
-{
-  using p4est         = dealii::internal::p4est::functions<dim>;
-  const MPI_Comm comm = triangulation.get_communicator();
-  std::ifstream  info(file + ".info");
-  std::string    titles;
-  unsigned int   version = 0, n_saved = 0;
-  std::getline(info, titles);
-  info >> version >> n_saved;
-  typename dealii::internal::p4est::types<dim>::connectivity *connectivity = nullptr;
-
-  auto *const forest = p4est::load_ext(
-    file.c_str(), comm, 0, 0, n_saved != mpi::n_ranks(comm), 0, nullptr, &connectivity);
-  triangulation.load(forest);
-  p4est::destroy(forest);
-  p4est::connectivity_destroy(connectivity);
-}
-
-template <int dim>
-void
-Octree<dim>::save(const std::string &file) const
-{
-  triangulation.save(file);
-}
-
-template <int dim>
-std::uint64_t
-Octree<dim>::saved_size() const
-{
-  // A quadrant is three coordinates and a level; the coarse mesh comes before them.
-  return 32 * triangulation.n_global_active_cells() + 512 * triangulation.n_cells(0) + 65536;
 }
 
 template <int dim>

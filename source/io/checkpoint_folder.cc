@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/base/text_scanner.h>
 #include <coracle/io/checkpoint_folder.h>
 #include <coracle/io/disk.h>
 
@@ -7,7 +8,6 @@
 #include <boost/serialization/utility.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
@@ -51,23 +51,69 @@ rename(const std::string &from, const std::string &to)
   must(error, to);
 }
 
+/// Nothing of ours is as deep: what is, is none, and would be hard to print and to delete.
+Json
+parse(const std::string &text)
+{
+  constexpr int deepest  = 6;
+  bool          too_deep = false;
+  const Json    result   = Json::parse(
+    text,
+    [&too_deep](const int depth, const Json::parse_event_t, const Json &) {
+      too_deep = too_deep || depth > deepest;
+      return !too_deep;
+    },
+    false);
+  return too_deep ? Json() : result;
+}
+
 /// Empty, or why the manifest cannot be trusted; then its contents.
 std::string
 read_manifest(const std::string &file, Json &contents)
-{
-  std::ifstream stream(file);
-  if (!stream)
-    return file + ": cannot be read";
-  const Json manifest = Json::parse(stream, nullptr, false);
-  if (manifest.is_discarded() || !manifest.is_object() || !manifest.contains("contents") ||
-      manifest.value("crc32", std::uint64_t(0)) != checksum_of(manifest["contents"].dump()))
+try
+  {
+    const Json manifest = parse(read_whole_file(file));
+    if (!manifest.is_object() ||
+        manifest.at("crc32").get<std::uint64_t>() != checksum_of(manifest.at("contents").dump()))
+      return file + ": damaged";
+    contents = manifest["contents"];
+    if (contents.at("format") != format_name ||
+        contents.at("version") != CheckpointFolder::format_version)
+      return file + ": written by another version of the program (format " +
+             contents.at("version").dump() + " instead of " +
+             std::to_string(CheckpointFolder::format_version) + ")";
+    return "";
+  }
+catch (const FileError &error)
+  {
+    return error.what();
+  }
+catch (const Json::exception &)
+  {
     return file + ": damaged";
-  contents = manifest["contents"];
-  if (contents.value("format", "") != format_name ||
-      contents.value("version", 0) != CheckpointFolder::format_version)
-    return file + ": written by another version of the program (format " +
-           std::to_string(contents.value("version", 0)) + " instead of " +
-           std::to_string(CheckpointFolder::format_version) + ")";
+  }
+
+/// Throws an exception of Json's where they are none; the rest of what is wrong is empty or told.
+std::string
+read_facts(const Json &contents, const std::string &name, CheckpointFolder::Facts &facts)
+{
+  for (const char *const fact : {"dimension", "ranks", "step"})
+    if (!contents.at(fact).is_number_unsigned())
+      return std::string("'") + fact + "' is no number";
+  facts = {contents.at("dimension"),
+           contents.at("ranks"),
+           contents.at("step"),
+           contents.at("time")};
+  if (folder_name(facts.step) != name)
+    return "it is of another step, " + std::to_string(facts.step);
+  // One at least of each rank: there are not more ranks than the manifest is long.
+  const Json &files = contents.at("files");
+  if (!files.is_object() || facts.n_ranks == 0 || files.size() < facts.n_ranks)
+    return std::to_string(files.size()) + " files of " + std::to_string(facts.n_ranks) + " ranks";
+  for (const auto &[file, expected] : files.items())
+    if (fs::path(file).filename() != file || !expected.at("size").is_number_unsigned() ||
+        !expected.at("crc32").is_number_unsigned())
+      return "a file that cannot be in it";
   return "";
 }
 
@@ -205,14 +251,20 @@ CheckpointFolder::check(const std::string &name, Facts &facts) const
   const std::string path = folder + "/" + name;
   Json              contents;
   std::string       problem = read_manifest(path + "/manifest.json", contents);
-  if (problem.empty())
+  try
     {
-      facts = {contents["dimension"], contents["ranks"], contents["step"], contents["time"]};
+      if (problem.empty())
+        problem = read_facts(contents, name, facts);
       // Shared out, because checksums take as long as reading.
       unsigned int i = 0;
-      for (const auto &[file, expected] : contents["files"].items())
-        if (i++ % mpi::n_ranks(comm) == mpi::rank(comm) && problem.empty())
-          problem = check_file(path, file, expected);
+      if (problem.empty())
+        for (const auto &[file, expected] : contents["files"].items())
+          if (i++ % mpi::n_ranks(comm) == mpi::rank(comm) && problem.empty())
+            problem = check_file(path, file, expected);
+    }
+  catch (const Json::exception &)
+    {
+      problem = path + "/manifest.json: damaged";
     }
   for (const std::string &other : dealii::Utilities::MPI::all_gather(comm, problem))
     if (!other.empty())

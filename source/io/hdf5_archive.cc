@@ -124,19 +124,25 @@ Hdf5Archive::has(const unsigned int part, const std::string &name) const
 std::vector<char>
 Hdf5Archive::get(const unsigned int part, const std::string &name, Block &block) const
 {
-  const hid_t set = H5Dopen2(open(part), name.c_str(), H5P_DEFAULT);
+  const hid_t file = open(part), set = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
   if (set < 0)
     throw not_readable(names[part], name);
   const hid_t space = H5Dget_space(set), type = H5Dget_type(set);
-  hsize_t     extent[2] = {0, 0};
-  bool        good      = H5Sget_simple_extent_ndims(space) == 2 && find_type(type, block.type);
+  hsize_t     extent[2] = {0, 0}, size_of_file = 0;
+  bool        good = H5Sget_simple_extent_ndims(space) == 2 && find_type(type, block.type) &&
+              H5Fget_filesize(file, &size_of_file) >= 0;
   if (good)
     H5Sget_simple_extent_dims(space, extent, nullptr);
   block.n_rows    = extent[0];
   block.n_columns = extent[1];
-  std::vector<char> bytes(extent[0] * extent[1] * H5Tget_size(type));
-  good =
-    good && (bytes.empty() || H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0);
+  // All of it must be in the file; the first test keeps the product from overflowing.
+  const std::size_t width = (good ? H5Tget_size(type) : 1);
+  good                    = good && extent[0] <= size_of_file && extent[1] <= size_of_file &&
+         (extent[1] == 0 || extent[0] <= size_of_file / width / extent[1]);
+  std::vector<char> bytes(good ? extent[0] * extent[1] * width : 0);
+  good = good &&
+         (bytes.empty() || (H5Dget_storage_size(set) == bytes.size() &&
+                            H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0));
   H5Tclose(type);
   H5Sclose(space);
   H5Dclose(set);

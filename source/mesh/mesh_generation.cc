@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <deal.II/base/utilities.h>
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
+#include <coracle/mesh/mesh_from_file.h>
 #include <coracle/mesh/mesh_generation.h>
 #include <coracle/mesh/polygon.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace coracle
 {
@@ -187,38 +184,20 @@ template <int dim>
 void
 read_file(const Parameters &section, dealii::Triangulation<dim> &triangulation)
 {
-  const std::string   file = section.file("File"), end = file.substr(file.find_last_of('.') + 1);
-  std::ifstream       stream(file);
-  dealii::GridIn<dim> reader(triangulation);
   try
     {
-      if (end == "msh")
-        reader.read_msh(stream);
-      else if (end == "inp")
-        reader.read_abaqus(stream);
-      else if (end == "vtk")
-        reader.read_vtk(stream);
-      else
-        throw section.error("File",
-                            "unknown kind of mesh file",
-                            "'." + end + "'",
-                            "give a gmsh (.msh), Abaqus (.inp) or legacy VTK (.vtk) file");
+      make_triangulation(read_mesh_file(section.file("File")), triangulation);
     }
-  catch (const dealii::ExceptionBase &e)
+  catch (const FileError &error)
     {
-      std::ostringstream reason;
-      e.print_info(reason);
-      throw section.error("File",
-                          "mesh file that cannot be read",
-                          dealii::Utilities::trim(reason.str()),
-                          "check that the file has a mesh of quadrilaterals (2-D) or hexahedra "
-                          "(3-D) of first order and nothing else of that dimension");
+      throw section.error(
+        "File",
+        "mesh file that cannot be used",
+        error.what(),
+        "give a gmsh (.msh), Abaqus (.inp) or legacy VTK (.vtk) file, as text, with "
+        "a mesh of quadrilaterals (2-D) or hexahedra (3-D) of first order and "
+        "nothing else of that dimension");
     }
-  if (!triangulation.all_reference_cells_are_hyper_cube())
-    throw section.error("File",
-                        "elements of another kind",
-                        "triangles, tetrahedra, wedges or pyramids",
-                        "mesh with quadrilaterals (2-D) or hexahedra (3-D) only");
 }
 } // namespace
 

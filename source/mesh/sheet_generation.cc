@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <deal.II/base/utilities.h>
-#include <deal.II/grid/grid_in.h>
-#include <deal.II/grid/tria.h>
 #include <deal.II/physics/transformations.h>
 
+#include <coracle/mesh/mesh_from_file.h>
 #include <coracle/mesh/sheet_generation.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -131,48 +128,20 @@ template <int dim>
 FacetList<dim>
 read_file(const Parameters &section)
 {
-  const std::string file = section.file("File"), end = file.substr(file.find_last_of('.') + 1);
-  dealii::Triangulation<dim - 1, dim> mesh;
-  dealii::GridIn<dim - 1, dim>        reader(mesh);
   try
     {
-      std::ifstream stream(file);
-      if (end == "msh")
-        reader.read_msh(stream);
-      else if (end == "inp" && dim == 3)
-        reader.read_abaqus(stream);
-      else if (end == "vtk")
-        reader.read_vtk(stream);
-      else
-        throw section.error("File",
-                            "unknown kind of surface file",
-                            "'." + end + "'",
-                            dim == 3 ? "give a gmsh (.msh), Abaqus (.inp) or legacy VTK (.vtk) file"
-                                     : "give a gmsh (.msh) or legacy VTK (.vtk) file");
+      return make_facets<dim>(read_mesh_file(section.file("File")));
     }
-  catch (const dealii::ExceptionBase &e)
+  catch (const FileError &error)
     {
-      std::ostringstream reason;
-      e.print_info(reason);
-      throw section.error("File",
-                          "surface file that cannot be read",
-                          dealii::Utilities::trim(reason.str()),
-                          "check that the file has quadrilaterals and triangles (in 2-D: lines) of "
-                          "first order, and no volumes");
+      throw section.error(
+        "File",
+        "surface file that cannot be used",
+        error.what(),
+        "give a gmsh (.msh), Abaqus (.inp) or legacy VTK (.vtk) file, as text, with "
+        "quadrilaterals and triangles (in 2-D: lines) of first order, and no "
+        "volumes");
     }
-  FacetList<dim> surface;
-  surface.points = mesh.get_vertices();
-  for (const auto &cell : mesh.active_cell_iterators())
-    {
-      typename FacetList<dim>::Corners corners;
-      // Around a quadrilateral deal.II's vertices are 0, 1, 3, 2; a triangle repeats its last.
-      constexpr std::array<unsigned int, 4> around = {{0, 1, 3, 2}};
-      for (unsigned int k = 0; k < corners.size(); ++k)
-        corners[k] =
-          cell->vertex_index(cell->n_vertices() == 4 ? around[k] : std::min(k, dim - 1u));
-      surface.facets.push_back(corners);
-    }
-  return surface;
 }
 
 template <int dim>
@@ -275,7 +244,7 @@ declare_sheets(Declaration &section)
   line.integer("Subdivisions along z", 1, "facets along z, 3-D only", 1);
   section.when("Type", "surface file")
     .file("File",
-          "quadrilaterals and triangles (in 2-D: lines): gmsh (.msh), Abaqus (.inp, 3-D) or legacy "
+          "quadrilaterals and triangles (in 2-D: lines): gmsh (.msh), Abaqus (.inp) or legacy "
           "VTK (.vtk)");
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/text_scanner.h>
 #include <coracle/particles/shape_crossing.h>
 #include <coracle/particles/shape_surface.h>
 
@@ -122,24 +123,15 @@ read_closed_surface(const Parameters &body)
     {
       facets = read_facets<dim>(file_name);
     }
-  catch (const dealii::ExceptionBase &exception)
+  catch (const FileError &error)
     {
-      std::ostringstream text;
-      exception.print_info(text);
-      problem = text.str();
-      // deal.II sets its messages off with blanks and an empty line.
-      problem.erase(0, problem.find_first_not_of(" \n"));
-      problem.erase(problem.find_last_not_of(" \n") + 1);
-    }
-  catch (const std::exception &exception)
-    {
-      problem = exception.what();
+      problem = error.what();
     }
   if (facets.empty())
     throw body.error(
       entry,
       "surface cannot be read",
-      file_name + (problem.empty() ? ": no facets" : ": " + problem),
+      problem.empty() ? file_name + ": no facets" : problem,
       dim == 2 ? "give a mesh of lines (.msh, .vtk, .inp, .ucd)"
                : "give a mesh of triangles or quadrilaterals (.stl, .msh, .vtk, .inp, .ucd)");
 

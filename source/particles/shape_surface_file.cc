@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <coracle/base/mesh_file.h>
 #include <coracle/particles/shape_surface.h>
-
-#include <deal.II/grid/grid_in.h>
-#include <deal.II/grid/tria.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-#include <stdexcept>
 
 namespace coracle
 {
@@ -41,67 +35,64 @@ read_binary_stl(const std::string &bytes)
 }
 
 FacetSoup<3>
-read_text_stl(const std::string &bytes)
+read_text_stl(const std::string &file_name)
 {
-  FacetSoup<3>       facets;
-  std::istringstream in(bytes);
-  std::string        word;
-  unsigned int       n_vertices = 0;
-  while (in >> word)
-    if (word == "vertex")
+  FacetSoup<3> facets;
+  TextScanner  in(file_name);
+  unsigned int n_vertices = 0;
+  while (!in.at_end())
+    if (in.word() == "vertex")
       {
-        double x, y, z;
-        if (!(in >> x >> y >> z))
-          throw std::runtime_error("a number is missing after vertex " +
-                                   std::to_string(n_vertices));
         if (n_vertices % 3 == 0)
           facets.emplace_back();
-        facets.back()[n_vertices % 3] = {x, y, z};
+        for (int d = 0; d < 3; ++d)
+          facets.back()[n_vertices % 3][d] = in.real("coordinate");
         ++n_vertices;
       }
   if (n_vertices % 3 != 0)
-    throw std::runtime_error("the last triangle is incomplete");
+    in.fail("the last triangle is incomplete");
   return facets;
 }
 
 FacetSoup<3>
 read_stl(const std::string &file_name)
 {
-  std::ifstream     file(file_name, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string bytes = read_whole_file(file_name);
   // A binary title may begin with "solid" as text files do: only the size tells them apart.
   std::uint32_t n_triangles = 0;
   if (bytes.size() >= 84)
     std::memcpy(&n_triangles, bytes.data() + 80, sizeof(n_triangles));
   const bool binary = bytes.size() >= 84 && bytes.size() == 84 + 50 * std::size_t(n_triangles);
-  return binary ? read_binary_stl(bytes) : read_text_stl(bytes);
+  return binary ? read_binary_stl(bytes) : read_text_stl(file_name);
 }
 
 template <int dim>
 FacetSoup<dim>
 read_mesh(const std::string &file_name)
 {
-  dealii::Triangulation<dim - 1, dim> mesh;
-  dealii::GridIn<dim - 1, dim>        reader(mesh);
-  // Abaqus and UCD share a suffix; only Abaqus files begin with a keyword.
-  std::ifstream file(file_name);
-  if (dim == 3 && suffix_of(file_name) == ".inp" && (file >> std::ws).peek() == '*')
-    reader.read_abaqus(file);
-  else
-    reader.read(file_name);
-
+  const MeshFile mesh = read_mesh_file(file_name);
   FacetSoup<dim> facets;
-  for (const auto &cell : mesh.active_cell_iterators())
-    if constexpr (dim == 2)
-      facets.push_back({{cell->vertex(0), cell->vertex(1)}});
-    else
-      {
-        // Around a quadrilateral deal.II's corners are 0, 1, 3, 2.
-        facets.push_back(
-          {{cell->vertex(0), cell->vertex(1), cell->vertex(cell->n_vertices() == 4 ? 3 : 2)}});
-        if (cell->n_vertices() == 4)
-          facets.push_back({{cell->vertex(0), cell->vertex(3), cell->vertex(2)}});
-      }
+  for (const MeshFile::Element &element : mesh.elements)
+    {
+      const auto point = [&](const unsigned int k) {
+        dealii::Point<dim> p;
+        for (int d = 0; d < dim; ++d)
+          p[d] = mesh.points[element.points[k]][d];
+        return p;
+      };
+      if (MeshFile::dimension(element.kind) >= dim)
+        mesh.fail(element, dim == 2 ? "no line, but an area or a volume" : "a volume");
+      if (MeshFile::dimension(element.kind) + 1 < dim)
+        continue;
+      if constexpr (dim == 2)
+        facets.push_back({{point(0), point(1)}});
+      else
+        {
+          facets.push_back({{point(0), point(1), point(2)}});
+          if (element.kind == MeshFile::Kind::quadrilateral)
+            facets.push_back({{point(0), point(2), point(3)}});
+        }
+    }
   return facets;
 }
 
@@ -114,8 +105,8 @@ read_any(const std::string &file_name)
     {
       if constexpr (dim == 3)
         return read_stl(file_name);
-      throw std::runtime_error(
-        "STL files hold triangles in space; a 2-D case needs a mesh of lines");
+      throw FileError(file_name +
+                      ": STL files hold triangles in space; a 2-D case needs a mesh of lines");
     }
   return read_mesh<dim>(file_name);
 }
@@ -130,7 +121,7 @@ read_facets(const std::string &file_name)
     for (const auto &vertex : facet)
       for (int d = 0; d < dim; ++d)
         if (!std::isfinite(vertex[d]))
-          throw std::runtime_error("a coordinate is not a finite number");
+          throw FileError(file_name + ": a coordinate is not a finite number");
   return facets;
 }
 template FacetSoup<2> read_facets<2>(const std::string &);

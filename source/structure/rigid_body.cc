@@ -127,6 +127,8 @@ RigidBody<dim>::predict_velocities(const double dt)
   external_work += kinetic_energy() - before;
   last_dt = dt;
   set_node_velocities();
+  start_centre      = body_centre;
+  start_orientation = rotation.orientation();
 }
 
 template <int dim>
@@ -219,6 +221,27 @@ RigidBody<dim>::move(const double dt)
   body_centre += dt * body_velocity;
   rotation.advance(dt);
   set_node_positions();
+}
+
+template <int dim>
+bool
+RigidBody<dim>::shorten_step(const double part)
+{
+  bool result = false;
+  for (int d = 0; d < dim; ++d)
+    if (inverse_mass_of_body[d] > 0 && body_centre[d] != start_centre[d])
+      {
+        // Exactly there for 0.
+        body_centre[d] = start_centre[d] + part * (body_centre[d] - start_centre[d]);
+        result         = true;
+      }
+  result = rotation.turn_back(start_orientation, part) || result;
+  if (!result)
+    return false;
+  for (unsigned int n = 0; n < this->mesh().n_nodes(); ++n)
+    this->add_vector(Node::position, n, -this->vector(Node::increment, n));
+  set_node_positions();
+  return true;
 }
 
 template <int dim>

@@ -130,6 +130,24 @@ RigidRotation::turn(const Vector3 &rotation)
   quaternion = product(rotation_by(rotation), quaternion);
 }
 
+bool
+RigidRotation::turn_back(const std::array<double, 4> &start, const double part)
+{
+  if (quaternion == start || given_spin.norm_square() > 0)
+    return false;
+  const Quaternion inverse = {{start[0], -start[1], -start[2], -start[3]}};
+  Quaternion       r       = product(quaternion, inverse);
+  if (r[0] < 0)
+    for (double &component : r)
+      component = -component;
+  const Vector3 axis({r[1], r[2], r[3]});
+  const double  s = axis.norm();
+  quaternion      = start;
+  if (part > 0 && s > 0)
+    turn(part * 2 * std::atan2(s, r[0]) / s * axis);
+  return true;
+}
+
 Vector3
 RigidRotation::spin() const
 {

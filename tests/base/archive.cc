@@ -4,48 +4,15 @@
 #include <coracle/base/archive.h>
 #include <coracle/base/exceptions.h>
 
-#include <map>
 #include <numeric>
 
+#include "memory_store.h"
 #include "tests.h"
 
 using namespace coracle;
 
 namespace
 {
-class Memory : public ArchiveStore
-{
-public:
-  explicit Memory(const unsigned int n) : parts(n) {}
-
-  void put(const std::string &name, const Block &block, const void *values) override
-  {
-    const std::size_t size  = block.type == Block::Type::real || block.type == Block::Type::natural
-                                ? 8
-                              : block.type == Block::Type::byte ? 1
-                                                                : 4;
-    const char *const begin = static_cast<const char *>(values);
-    parts[writer][name]     = {block,
-                               std::vector<char>(begin, begin + size * block.n_rows * block.n_columns)};
-  }
-  std::vector<char>
-  get(const unsigned int part, const std::string &name, Block &block) const override
-  {
-    block = parts[part].at(name).first;
-    return parts[part].at(name).second;
-  }
-  bool has(const unsigned int part, const std::string &name) const override
-  {
-    return parts[part].count(name) > 0;
-  }
-  unsigned int n_parts() const override { return parts.size(); }
-
-  unsigned int writer = 0;
-
-private:
-  std::vector<std::map<std::string, std::pair<Block, std::vector<char>>>> parts;
-};
-
 /// What one rank has: nodes in a row, two of which it shares with its neighbours.
 struct State
 {
@@ -54,7 +21,7 @@ struct State
   std::vector<std::string>               names;
   std::vector<std::vector<unsigned int>> lists;
   std::vector<dealii::Tensor<1, 2>>      momenta;
-  std::vector<int>                       cells;
+  std::vector<int>                       cells, list;
   Columns                                particles = Columns(2), nodes = Columns(2);
   std::vector<std::uint64_t>             keys;
   unsigned int                           n_owned = 0;
@@ -71,6 +38,7 @@ struct State
     archive.largest("rate", rate);
     archive.smallest("step", step);
     archive.all("cells", cells);
+    archive.in_order("list", list, 2);
     archive.rows("particles", particles);
     archive.keyed("nodes", keys, n_owned, nodes, {1, 1});
   }
@@ -90,6 +58,9 @@ state_of(const int rank, const std::vector<std::uint64_t> &keys, const unsigned 
   state.momenta.resize(2);
   state.momenta[1][0] = rank;
   state.cells.assign(rank, rank);
+  // Five pairs in all: none, three and two.
+  for (int i = 0; i < 2 * (rank == 0 ? 0 : 4 - rank); ++i)
+    state.list.push_back((rank == 2 ? 6 : 0) + i);
   state.particles.resize(rank + 1);
   for (int row = 0; row <= rank; ++row)
     state.particles[1][row] = 10 * rank + row;
@@ -130,7 +101,7 @@ main()
   const std::vector<State> saved = {state_of(0, {0, 1, 2, 3}, 3),
                                     state_of(1, {3, 4, 2}, 2),
                                     state_of(2, {5, 4}, 1)};
-  Memory                   memory(3);
+  MemoryStore              memory(3);
   for (unsigned int rank = 0; rank < 3; ++rank)
     {
       memory.writer = rank;
@@ -152,7 +123,8 @@ main()
       exact          = exact && loaded.time == s.time && loaded.flag && loaded.energy == s.energy &&
               loaded.rate == s.rate && loaded.step == s.step && loaded.names == s.names &&
               loaded.lists == s.lists && loaded.momenta == s.momenta && loaded.cells == s.cells &&
-              equal(loaded.particles, s.particles) && equal(loaded.nodes, s.nodes);
+              loaded.list == s.list && equal(loaded.particles, s.particles) &&
+              equal(loaded.nodes, s.nodes);
     }
   deallog << "three ranks have their own back: " << exact << std::endl;
 
@@ -178,6 +150,8 @@ main()
           << std::accumulate(two[0].particles[1], two[0].particles[1] + 4, 0.) +
                std::accumulate(two[1].particles[1], two[1].particles[1] + 2, 0.)
           << ", cells " << two[1].cells.size() << std::endl;
+  deallog << "one list: " << (two[0].list == std::vector<int>{0, 1, 2, 3}) << ' '
+          << (two[1].list == std::vector<int>{4, 5, 6, 7, 8, 9}) << std::endl;
   for (const State &state : two)
     {
       for (unsigned int n = 0; n < state.keys.size(); ++n)
@@ -195,4 +169,34 @@ main()
     {
       deallog << failure.title << std::endl;
     }
+
+  // What does not hold together is refused, not read past its end.
+  const auto refused = [&memory](const std::string &name, const std::size_t size) {
+    MemoryStore damaged = memory;
+    auto       &stored  = damaged.parts[1]["state/" + name];
+    stored.block.n_rows = size;
+    stored.bytes.resize(size *
+                        (stored.bytes.size() / memory.parts[1]["state/" + name].block.n_rows));
+    for (const unsigned int n_ranks : {2, 3})
+      try
+        {
+          Archive archive(damaged, Archive::Mode::load, 1, n_ranks);
+          State   loaded;
+          loaded.keys    = {3, 4, 2};
+          loaded.n_owned = 2;
+          loaded.nodes.resize(3);
+          loaded.serialize(archive);
+          deallog << name << " with " << size << " entries is taken by " << n_ranks << std::endl;
+        }
+      catch (const RunFailure &)
+        {
+          deallog << name << " with " << size << " entries is refused by " << n_ranks << std::endl;
+        }
+  };
+  refused("names.sizes", 2);
+  refused("names", 3);
+  refused("lists", 2);
+  refused("momenta", 1);
+  refused("list", 3);
+  refused("nodes/keys", 4);
 }

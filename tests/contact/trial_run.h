@@ -175,7 +175,13 @@ Scene<dim>::step()
   outcome.resolved = contacts.report().n_resolved;
   outcome.failed   = contacts.report().n_failed;
   outcome.contacts += contacts.report().n_contacts;
-  outcome.unconverged += !contacts.report().solver.velocity.converged;
+  const auto &solved = contacts.report().solver;
+  outcome.unconverged += !solved.velocity.converged;
+  if (verbose && rank == 0 && !solved.velocity.converged)
+    std::cout << "    step " << outcome.steps << " not converged: " << solved.n_contacts
+              << " contacts, residual " << solved.velocity.residual / solved.scale
+              << " of the approach speed, violation " << solved.worst_violation / solved.scale
+              << std::endl;
 }
 
 template <int dim>

@@ -8,6 +8,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <zlib.h>
 
 #include "tests.h"
 
@@ -47,6 +49,17 @@ report(const CheckpointFolder &folder, const std::string &what)
     deallog << "  " << complaint << std::endl;
 }
 
+/// What is said of the newest only.
+void
+report_newest(const CheckpointFolder &folder, const std::string &what)
+{
+  std::vector<std::string> complaints;
+  const auto               found = folder.newest_good(complaints);
+  deallog << what << ": "
+          << (complaints.empty() ? "step " + std::to_string(found->facts.step) : complaints[0])
+          << std::endl;
+}
+
 /// On rank 0, while nobody looks.
 void
 damage(const std::function<void()> &action)
@@ -55,6 +68,35 @@ damage(const std::function<void()> &action)
   if (mpi::rank(MPI_COMM_WORLD) == 0)
     action();
   MPI_Barrier(MPI_COMM_WORLD);
+}
+} // namespace
+
+namespace
+{
+using Json = nlohmann::json;
+
+/// Change the manifest of step 5 for a while, with a right checksum or not.
+void
+forge(const CheckpointFolder            &folder,
+      const std::string                 &what,
+      const std::function<void(Json &)> &change,
+      const bool                         right = true)
+{
+  const std::string file = "run/checkpoints/step_0000000005/manifest.json";
+  Json              manifest;
+  damage([&] {
+    std::ifstream(file) >> manifest;
+    Json forged = manifest;
+    change(forged);
+    if (right)
+      {
+        const std::string text = forged["contents"].dump();
+        forged["crc32"] = crc32(0, reinterpret_cast<const Bytef *>(text.data()), text.size());
+      }
+    std::ofstream(file) << forged;
+  });
+  report_newest(folder, what);
+  damage([&] { std::ofstream(file) << manifest; });
 }
 } // namespace
 
@@ -108,6 +150,40 @@ main(int argc, char **argv)
   report(folder, "a manifest is changed");
   damage([] { fs::remove("run/checkpoints/step_0000000003/manifest.json"); });
   report(folder, "a manifest is gone");
+
+  // What no damage makes, but somebody could.
+  write(folder, 5, 3);
+  forge(
+    folder, "a checksum that is no number", [](Json &manifest) { manifest["crc32"] = "1"; }, false);
+  forge(
+    folder, "no contents", [](Json &manifest) { manifest.erase("contents"); }, false);
+  forge(
+    folder,
+    "a list",
+    [](Json &manifest) {
+      manifest = Json::array({1, 2});
+    },
+    false);
+  forge(folder, "no number of the format", [](Json &manifest) {
+    manifest["contents"]["version"] = {1};
+  });
+  forge(folder, "endless ranks", [](Json &manifest) {
+    manifest["contents"]["ranks"] = 4294967295u;
+  });
+  forge(folder, "no ranks", [](Json &manifest) { manifest["contents"].erase("ranks"); });
+  forge(folder, "half a rank", [](Json &manifest) { manifest["contents"]["ranks"] = 0.5; });
+  forge(folder, "another step", [](Json &manifest) { manifest["contents"]["step"] = 7; });
+  forge(folder, "no files", [](Json &manifest) { manifest["contents"]["files"] = 3; });
+  forge(folder, "a file elsewhere", [](Json &manifest) {
+    manifest["contents"]["files"]["../step_0000000004/manifest.json"] = {{"size", 1}, {"crc32", 1}};
+  });
+  forge(folder, "a file without size", [](Json &manifest) {
+    manifest["contents"]["files"]["part.0"].erase("size");
+  });
+  damage([] {
+    std::ofstream("run/checkpoints/step_0000000005/manifest.json") << std::string(1000000, '[');
+  });
+  report_newest(folder, "a million brackets");
 
   deallog << "set aside: " << folder.set_aside() << std::endl;
   report(folder, "then");

@@ -44,7 +44,8 @@ refused(const std::string &lines)
     }
   catch (const UserError &e)
     {
-      deallog << "refused: " << e.title << " | " << e.found << std::endl;
+      deallog << "refused: " << e.title << " | " << e.found.substr(e.found.rfind('/') + 1)
+              << std::endl;
     }
 }
 

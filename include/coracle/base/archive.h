@@ -60,6 +60,7 @@ public:
  *   share     each rank has a share of a sum: the sum goes to rank 0
  *   largest, smallest   each rank has its own, of which the largest or smallest counts
  *   own       means nothing on other ranks: it is left as it is
+ *   in_order  one list through all ranks: it is cut anew
  *   rows      particles: each part's go to one rank, who hands them on
  *   keyed     nodes and elements: found again by their keys
  *
@@ -125,6 +126,9 @@ public:
       {
         T other = value;
         load(part, name, other);
+        if constexpr (IsVector<T>::value)
+          if (other.size() != value.size())
+            throw_not_of_a_piece(name);
         add(other, value);
       }
     if (rank > 0)
@@ -174,6 +178,10 @@ public:
         values.insert(values.end(), some.begin(), some.end());
       }
   }
+
+  /// Entries, n_together of which belong together, in the order of the ranks: other ranks get even
+  /// shares of them in the same order.
+  void in_order(const std::string &name, std::vector<int> &values, const unsigned int n_together);
 
   void rows(const std::string &name, Columns &columns);
 
@@ -270,9 +278,13 @@ private:
             auto first = entries.begin();
             for (const std::uint64_t size : sizes)
               {
+                if (size > static_cast<std::uint64_t>(entries.end() - first))
+                  throw_not_of_a_piece(name);
                 value.emplace_back(first, first + size);
                 first += size;
               }
+            if (first != entries.end())
+              throw_not_of_a_piece(name);
           }
         else
           {
@@ -306,6 +318,9 @@ private:
     else
       value = T();
   }
+
+  /// The RunFailure of blocks that do not fit each other.
+  [[noreturn]] void throw_not_of_a_piece(const std::string &name) const;
 
   void put(const std::string &name, const Block &block, const void *values);
   /// Checks that the block is of the type and width, and has as many rows if that is not 0.

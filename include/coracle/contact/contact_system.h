@@ -8,6 +8,8 @@
 #include <coracle/contact/row_builder.h>
 #include <coracle/contact/solver.h>
 
+#include <functional>
+
 namespace coracle::contact
 {
 /// Contact as a line of the statistics; the same on all ranks.
@@ -141,16 +143,24 @@ public:
   /// Per rigid body, the same on all ranks.
   const std::vector<RigidImpulse> &rigid_impulses() const { return rigid_sums; }
 
+  /// Collective. Changes where structures end, and `owned` with them; returns whether any of this
+  /// rank's does.
+  using ChangeEnds = std::function<bool(const EndChanges<dim> &)>;
+
   /**
    * Collective. After all has moved and before positions are taken: changes the
-   * ends of points that would come too near to a facet, see ContinuousCheck.
+   * ends of nodes of structures, then of points that would come too near to a facet, see
+   * ContinuousCheck.
    * @param owned  as for find(), nodes at the end of the step
    * @param points as for find(), where they start
    * @param ends   columns of where points end
+   * @param change called only where nodes of structures meet facets; without it they are not
+   * followed
    */
   void resolve_in_time(const Surface<dim>                        &owned,
                        const std::vector<PointSet<dim>>          &points,
-                       const typename ContinuousCheck<dim>::Ends &ends);
+                       const typename ContinuousCheck<dim>::Ends &ends,
+                       const ChangeEnds                          &change = {});
 
   /**
    * Collective. After all has moved, and before points are renumbered: counts
@@ -183,11 +193,25 @@ private:
   /// What the local search cannot know of contacts of surface nodes, from the first of them on;
   /// returns the end of those that anything can move.
   std::size_t complete_node_contacts(const PointSet<dim> &points, const std::size_t first);
-  void        limit_travel(const Surface<dim>                        &owned,
-                           const std::vector<PointSet<dim>>          &points,
-                           const typename ContinuousCheck<dim>::Ends &ends);
-  void        sum_up(const std::vector<RigidUnknown<dim>> &rigid);
-  void        sum_up_blocks(const std::vector<RigidUnknown<dim>> &rigid);
+  /// The longest way of a node since the last search, over all ranks [m].
+  double        farthest_node(const Surface<dim> &owned) const;
+  void          limit_travel(const Surface<dim>                        &owned,
+                             const std::vector<PointSet<dim>>          &points,
+                             const typename ContinuousCheck<dim>::Ends &ends);
+  unsigned long limit_travel_of_nodes(const Surface<dim> &owned);
+  void          resolve_nodes_in_time(const Surface<dim>               &owned,
+                                      const std::vector<PointSet<dim>> &points,
+                                      const ChangeEnds                 &change);
+  /// What nodes ask for in one pass; returns how many are not free, on all ranks.
+  unsigned long ask_nodes(const Surface<dim>               &owned,
+                          const std::vector<PointSet<dim>> &points,
+                          const unsigned int                pass);
+  void          count_changed_nodes(const Surface<dim>                    &owned,
+                                    const std::vector<PointSet<dim>>      &points,
+                                    const std::vector<dealii::Point<dim>> &wanted,
+                                    const unsigned long                    n_failed);
+  void          sum_up(const std::vector<RigidUnknown<dim>> &rigid);
+  void          sum_up_blocks(const std::vector<RigidUnknown<dim>> &rigid);
 
   ContactOptions       options;
   MPI_Comm             communicator;
@@ -201,10 +225,12 @@ private:
 
   bool changed = true;
   /// How far candidates reach, beyond R, when they were looked for; how much of it is used up [m].
-  double reach = 0, used = 0, used_before = 0;
+  double reach = 0, used = 0, used_before = 0, largest_node_shift = 0;
   /// Steps since points or facets were last renumbered, and between the last two times; 0: unknown.
   unsigned int                    steps_since_change = 0, change_interval = 0;
   std::vector<dealii::Point<dim>> positions_at_search;
+  /// What nodes ask for, as numbered in surface() and among owned ones.
+  EndChanges<dim> asked, changes;
 
   std::vector<Contact<dim>>                 list;
   std::vector<typename WarmStart<dim>::Key> keys;

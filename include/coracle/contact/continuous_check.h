@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/base/exact_sum.h>
 #include <coracle/contact/contact.h>
+#include <coracle/contact/end_changes.h>
 #include <coracle/contact/global_search.h>
 #include <coracle/contact/nearest_point.h>
 
@@ -37,8 +39,8 @@ class ContinuousCheck
 public:
   using Vector = dealii::Tensor<1, dim>;
 
-  /// Columns of the coordinates at the end of the step, per point set [m]; null where points
-  /// cannot be moved one by one.
+  /// Columns of the coordinates at the end of the step, per point set [m]; null for nodes of
+  /// structures.
   using Ends = std::vector<std::array<double *, dim>>;
 
   /// Of R, and of the size of a facet, that a point keeps at least.
@@ -68,6 +70,31 @@ public:
                  const std::vector<const Candidates *> &candidates,
                  const std::vector<Contact<dim>>       &contacts,
                  const Ends                            &ends);
+
+  /// One pass over the nodes of structures.
+  struct NodePass
+  {
+    /// Index in the surface of nodes that are points, by their index among owned ones.
+    const std::vector<unsigned int> &local_nodes;
+    /// The first pass asks for the whole clearance, later ones for what the first may leave.
+    bool is_first, holds;
+    /// Facets go this many times as far as they must.
+    double growth;
+    /// Rounds displacements, so that their sum does not depend on the order if it must not.
+    SumGrid grid;
+  };
+
+  /**
+   * Follows the nodes of structures; arguments as for resolve().
+   * @param changes what they ask for, zero on entry; nodes as in `surface`
+   * @return how many of this rank's nodes are not free and can be helped
+   */
+  unsigned long follow_nodes(const Surface<dim>                    &surface,
+                             const std::vector<PointSet<dim>>      &points,
+                             const std::vector<const Candidates *> &candidates,
+                             const std::vector<Contact<dim>>       &contacts,
+                             const NodePass                        &pass,
+                             EndChanges<dim>                       &changes);
 
 private:
   static constexpr unsigned int n_vertices = vertices_per_facet<dim>;
@@ -110,7 +137,25 @@ private:
     std::array<double, dim> lower, upper;
   };
 
+  /// A node on its way.
+  struct Node
+  {
+    unsigned int       index;
+    int                body;
+    dealii::Point<dim> begin, end;
+  };
+
+  using ContactIterator = typename std::vector<Contact<dim>>::const_iterator;
+
+  void   find_extents(const Surface<dim> &surface);
   double size_of(const unsigned int facet) const;
+  /// Finds the bodies that a point has passed, and the normal of the surface that it starts on, or
+  /// 0. Takes its contacts, which are the next ones or none.
+  Vector look_at_contacts(const Surface<dim>    &surface,
+                          const unsigned int     set,
+                          const unsigned int     point,
+                          ContactIterator       &contact,
+                          const ContactIterator &end);
   /// How far off the facets that it starts on a point is thought to be [m].
   double way_off_surface(const Surface<dim>       &surface,
                          const dealii::Point<dim> &x,
@@ -121,6 +166,11 @@ private:
                const dealii::Point<dim> &end,
                const PointOfSet         &point);
   bool keep_free(const dealii::Point<dim> &begin, dealii::Point<dim> &end);
+  /// Changes the end until the path is free of all facets that it may meet; false if it is not.
+  bool find_free_end(const Surface<dim>       &surface,
+                     const dealii::Point<dim> &begin,
+                     dealii::Point<dim>       &end,
+                     const PointOfSet         &point);
   bool first_meeting(const dealii::Point<dim> &begin,
                      const dealii::Point<dim> &end,
                      Meeting                  &meeting,
@@ -134,7 +184,9 @@ private:
                                  const Near               &facet,
                                  Meeting                  &meeting);
   static NearestPoint<dim> nearest_on(const dealii::Point<dim> &x, const Vertices &vertices);
-  static Plane             plane_at_end(const Near &facet, const Meeting &meeting);
+  /// The same plane for ends that can be changed in some directions only.
+  Plane        within_reach(Plane plane, const dealii::Point<dim> &wanted) const;
+  static Plane plane_at_end(const Near &facet, const Meeting &meeting);
   static Plane
   plane_on_the_way(const Near &facet, const Meeting &meeting, const dealii::Point<dim> &begin);
   static dealii::Point<dim> carried(const Near               &facet,
@@ -143,10 +195,31 @@ private:
                                     const double              time);
   void project(const dealii::Point<dim> &wanted, dealii::Point<dim> &end) const;
 
+  bool respond(const Surface<dim> &surface,
+               Node                node,
+               const PointOfSet   &point,
+               const NodePass     &pass,
+               EndChanges<dim>    &changes);
+  /// Moves a node aside; false if there is no free place.
+  bool go_aside(const Surface<dim> &surface,
+                Node               &node,
+                const PointOfSet   &point,
+                const NodePass     &pass,
+                EndChanges<dim>    &changes);
+  /// Pushes a facet out of a node's way; false if its nodes cannot be moved.
+  bool push(const Surface<dim> &surface,
+            const Node         &node,
+            const Near         &facet,
+            const Meeting      &meeting,
+            const NodePass     &pass,
+            EndChanges<dim>    &changes) const;
+
   std::vector<dealii::Point<dim>> nodes;
   std::vector<Extent>             extents;
   std::vector<char>               passed;
   std::vector<Near>               near;
   std::vector<Plane>              planes;
+  /// Directions in which the present node cannot be moved.
+  std::array<bool, dim> fixed{};
 };
 } // namespace coracle::contact

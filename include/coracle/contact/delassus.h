@@ -85,6 +85,12 @@ public:
   const Sliding &sliding(const std::size_t contact) const { return slidings[contact]; }
   const std::vector<TrueMasses> &true_inverse_masses() const { return true_masses; }
 
+  /// Nodes that a contact acts on.
+  const unsigned int *first_node(const Row &row) const { return entry_unknown.data() + row.begin; }
+  const unsigned int *last_node(const Row &row) const { return first_node(row) + row.n_entries; }
+  /// Nodes that other ranks (or blocks) have as well.
+  const std::vector<unsigned int> &shared_nodes() const { return shared_list; }
+
   /// u = J v of one contact [m/s].
   Lanes<dim> relative_velocity(const Row &row, const LaneVelocities<dim> &v) const
   {
@@ -121,6 +127,11 @@ public:
   /// Collective. Shared velocities change by what all ranks have done to them since `before`;
   /// `scalar` is summed over the ranks on the same occasion.
   void synchronise(LaneVelocities<dim> &v, const LaneVelocities<dim> &before, double &scalar);
+
+  /// What synchronise() will need of v, from among these nodes and the rigid bodies.
+  void copy_shared(const LaneVelocities<dim>       &v,
+                   const std::vector<unsigned int> &nodes,
+                   LaneVelocities<dim>             &before) const;
 
   /// The predicted velocities; and zeros of the same shape.
   LaneVelocities<dim> predicted;
@@ -163,7 +174,7 @@ private:
   std::vector<Row>          list;
   std::vector<Sliding>      slidings;
   std::vector<TrueMasses>   true_masses;
-  std::vector<unsigned int> entry_unknown;
+  std::vector<unsigned int> entry_unknown, shared_list;
   std::vector<double>       entry_weight;
   std::vector<Lanes<dim>>   inverse_mass;
   /// From the centre of each side's rigid body to the point, if there are rigid bodies [m].

@@ -44,6 +44,9 @@ public:
   /// Index in surface().nodes of an owned node that is a point.
   unsigned int local_node(const unsigned int owned_node) const { return local_nodes[owned_node]; }
 
+  /// The same of all owned nodes; without meaning for those that are no points.
+  const std::vector<unsigned int> &local_nodes_of_points() const { return local_nodes; }
+
   /// Collective. Adds `values`, one per node of surface(), to the nodes they came from.
   void add_to_owners(const std::vector<dealii::Tensor<1, dim>> &values,
                      std::vector<dealii::Tensor<1, dim>>       &owned) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/contact/delassus.h>
+#include <coracle/contact/active_contacts.h>
 
 namespace coracle::contact
 {
@@ -30,22 +30,55 @@ public:
   /// At the start of a solve.
   void restart(const std::vector<Lanes<dim>> &impulses, const LaneVelocities<dim> &v);
 
-  /// (start - P) . (P - P_last) of this rank's contacts [J]: positive when the iteration that
-  /// began at `start` has turned back.
-  double turn(const Delassus<dim> &delassus, const std::vector<Lanes<dim>> &impulses) const;
+  /// (start - P) . (P - P_last) of these contacts [J]: positive when the iteration that began at
+  /// `start` has turned back.
+  double turn(const Delassus<dim>             &delassus,
+              const std::vector<unsigned int> &contacts,
+              const std::vector<Lanes<dim>>   &impulses) const;
   /// The same of all ranks' contacts, in an exact sum. Collective.
-  double turn_of_all(const Delassus<dim>           &delassus,
-                     const std::vector<Lanes<dim>> &impulses,
-                     MPI_Comm                       communicator) const;
+  double turn_of_all(const Delassus<dim>             &delassus,
+                     const std::vector<unsigned int> &contacts,
+                     const std::vector<Lanes<dim>>   &impulses,
+                     MPI_Comm                         communicator) const;
+
+  /// Square of P - P_last of a contact [N^2 s^2].
+  double direction_square(const unsigned int contact, const std::vector<Lanes<dim>> &impulses) const
+  {
+    const Lanes<dim> d = direction(contact, impulses);
+    return dot<dim>(d, d);
+  }
 
   /**
-   * After an iteration: impulses and velocities move on to where the next one starts.
+   * Collective. Between iteration and advance(): these contacts lose their
+   * momentum, and so do the velocities that it has changed.
+   * @param before room for shared velocities
+   */
+  void stop(Delassus<dim>                   &delassus,
+            const std::vector<unsigned int> &contacts,
+            const std::vector<Lanes<dim>>   &impulses,
+            LaneVelocities<dim>             &before);
+
+  /**
+   * After an iteration: impulses and velocities of what is active move on to where
+   * the next one starts.
    * @param turned turn() > 0 in the sum over all ranks
    */
-  void advance(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v);
+  void advance(const bool                 turned,
+               const ActiveContacts<dim> &active,
+               std::vector<Lanes<dim>>   &impulses,
+               LaneVelocities<dim>       &v);
 
 private:
-  void extrapolate(const bool turned, std::vector<Lanes<dim>> &impulses, LaneVelocities<dim> &v);
+  void extrapolate(const bool                 turned,
+                   const ActiveContacts<dim> &active,
+                   std::vector<Lanes<dim>>   &impulses,
+                   LaneVelocities<dim>       &v);
+  /// P - P_last.
+  Lanes<dim> direction(const unsigned int contact, const std::vector<Lanes<dim>> &impulses) const
+  {
+    return resting() ? -last[contact] : impulses[contact] - last[contact];
+  }
+  bool resting() const { return iteration < rest_end; }
   /// During a rest `last` is kept relative to the present: -1 makes it so, +1 undoes it.
   void make_relative(const double                   sign,
                      const std::vector<Lanes<dim>> &impulses,

@@ -30,7 +30,8 @@ public:
   void find(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
   /// Impulses that keep particles out, given to both sides. Collective.
   void solve(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure, const double dt);
-  /// Ends of particles that would come too near to a surface on their way are changed. Collective.
+  /// Ends of nodes of structures, then of particles, that would come too near to a surface on their
+  /// way are changed. Collective.
   void resolve_in_time(MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);
   /// Independent check of all particles near the surface over the step just moved. Collective.
   void audit(const MaterialPointSystem<dim> &points, StructureSystem<dim> &structure);

@@ -31,8 +31,8 @@ class Coupling
 public:
   /// All sections that every case has. Collective; throws UserError.
   static void declare(Declaration &root);
-  /// @param saved_octree of a state that is loaded next (see Octree); empty: the start of the case
-  Coupling(const Parameters &root, MPI_Comm comm, const std::string &saved_octree = "");
+  /// @param saved_octree of a state that is loaded next (see Octree); null: the start of the case
+  Coupling(const Parameters &root, MPI_Comm comm, Archive *saved_octree = nullptr);
 
   /// The whole state between steps but for the octree's leaves. Collective.
   void serialize(Archive &archive);

@@ -27,7 +27,7 @@ public:
                       const dealii::Tensor<1, dim> &gravity,
                       const MetSurfaces            &met,
                       MPI_Comm                      comm,
-                      const std::string            &saved_octree = "");
+                      Archive                      *saved_octree = nullptr);
 
   /// Between steps. Collective.
   void serialize(Archive &archive);

@@ -54,6 +54,10 @@ public:
                      const std::vector<dealii::Tensor<1, dim>> &correction,
                      const std::vector<typename contact::ContactSystem<dim>::RigidImpulse> &rigid);
 
+  /// After move(): changes where nodes of the published surface and rigid bodies end. Collective.
+  /// @return whether any of this rank's does
+  bool change_ends(const contact::EndChanges<dim> &changes);
+
   /**
    * Impulses on any nodes, also inside bodies. Collective.
    * @param impulse per body, solids first, and node that this rank owns [N s]

@@ -10,6 +10,7 @@
 
 #include <deal.II/fe/fe_q.h>
 
+#include <coracle/base/archive.h>
 #include <coracle/base/parameters.h>
 #include <coracle/grid/leaf_tree.h>
 #include <coracle/grid/node_exchange.h>
@@ -82,18 +83,17 @@ public:
   /**
    * @param weight work expected in a cell, from its centre and size, >= 0 (1 for a cell with
    *        nothing in it is added); decides the partition. May be empty.
-   * @param saved what save() wrote, by any number of ranks: its leaves and, on as many ranks, its
-   *        partition instead of refinements and weights; empty: none
+   * @param saved what save() put there, by any number of ranks: its leaves and, on as many ranks,
+   * its partition instead of refinements and weights; null: none. Throws RunFailure on all ranks
+   *        where this is not a 2:1 balanced octree of the same box
    */
   Octree(const OctreeDescription<dim>                                          &description,
          const std::function<double(const dealii::Point<dim> &, const double)> &weight,
          MPI_Comm                                                               communicator,
-         const std::string                                                     &saved = "");
+         Archive                                                               *saved = nullptr);
 
-  /// The leaves as they are, and who owns them, to FILE and FILE.info. Collective. A full disk ends
-  /// the program inside p4est: see to it that saved_size() bytes are free.
-  void          save(const std::string &file) const;
-  std::uint64_t saved_size() const;
+  /// The leaves as they are, and who owns them, as section `octree`.
+  void save(Archive &archive) const;
 
   /**
    * Refine and coarsen by one level at most, and share out anew. Neighbours, also through edges and
@@ -168,7 +168,7 @@ public:
 private:
   void make_coarse_grid();
   void refine();
-  void load(const std::string &file);
+  void load(Archive &archive);
   void partition(const std::function<double(const dealii::Point<dim> &, const double)> &weight);
   /// All numbers anew.
   void number();

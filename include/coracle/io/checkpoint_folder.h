@@ -20,7 +20,7 @@ class CheckpointFolder
 {
 public:
   /// Version of what is in a checkpoint; others are not read.
-  static constexpr int format_version = 1;
+  static constexpr int format_version = 2;
 
   CheckpointFolder(const std::string &output_directory, MPI_Comm communicator);
 

@@ -51,9 +51,8 @@ private:
 };
 
 /**
- * Read the facets of a surface file: STL (text or binary; 3-D), or what deal.II
- * reads for a mesh of lines in 2-D and of quadrilaterals or triangles in 3-D
- * (gmsh .msh, .vtk, UCD .inp or .ucd; Abaqus .inp in 3-D). Throws std::exception with the reason.
+ * Read the facets of a surface file: STL (text or binary; 3-D), or a mesh of lines in 2-D and of
+ * quadrilaterals or triangles in 3-D (see base/mesh_file.h). Throws FileError.
  */
 template <int dim>
 FacetSoup<dim> read_facets(const std::string &file_name);

@@ -57,6 +57,13 @@ public:
   void apply_corrections();
 
   void move(const double dt);
+  /**
+   * After move(): takes back all but a part of the free motion since the start of the step, of
+   * prescribed motion nothing; the body turns back unless a prescribed spin turns it. Velocities
+   * stay as they are.
+   * @return whether there was anything to take back
+   */
+  bool shorten_step(const double part);
   /// Throws RunFailure, on all ranks, where the motion is not a number.
   void update_stress(const double);
 
@@ -120,6 +127,10 @@ private:
   Vector  last_force;
   Vector3 last_moment;
   double  time = 0, last_dt = 0, external_work = 0, contact_work = 0;
+
+  /// Where the step began.
+  dealii::Point<dim>    start_centre;
+  std::array<double, 4> start_orientation{{1, 0, 0, 0}};
 };
 
 extern template class RigidBody<2>;

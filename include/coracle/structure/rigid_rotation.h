@@ -43,6 +43,9 @@ public:
   void advance(const double dt);
   /// Turn by a rotation vector [rad].
   void turn(const Vector3 &rotation);
+  /// Keeps a part of the turn since an orientation [1], unless a given spin has a share in it;
+  /// returns whether there was any.
+  bool turn_back(const std::array<double, 4> &start, const double part);
 
   Vector3 spin() const;
   /// I omega [kg m^2/s].

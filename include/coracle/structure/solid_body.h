@@ -66,6 +66,17 @@ public:
   void apply_corrections();
 
   void move(const double dt);
+
+  /**
+   * After move(): changes where a node of surface_nodes() ends, from any rank that has it; see
+   * contact::EndChanges.
+   * @param shift sum of displacements [m], @param count how many, and how often it is to be held
+   */
+  void add_end_change(const unsigned int node, const Vector &shift, const Vector &count);
+  /// Velocities stay as they are. Collective.
+  /// @param held_part of their way that held nodes keep; @return whether a node of this rank moves
+  bool apply_end_changes(const double held_part);
+
   /// Stresses, and internal forces for the next step. Throws RunFailure, on the rank concerned
   /// only.
   void update_stress(const double dt);

@@ -3,6 +3,7 @@
 #include <coracle/coupling/initial_velocity.h>
 #include <coracle/coupling/meshless_system.h>
 #include <coracle/particles/shape.h>
+#include <coracle/structure/selection.h>
 
 #include <sstream>
 
@@ -35,6 +36,18 @@ check_company(const Parameters &bodies)
                          std::to_string(n_fluids) + " of them",
                          "make one body of them, for example with the shape 'indicator'");
     }
+}
+
+/// Is a place of the box on its lower (side 0) or upper face?
+template <int dim>
+bool
+on_face(const meshless::FluidOptions<dim> &options,
+        const dealii::Point<dim>          &x,
+        const unsigned int                 d,
+        const unsigned int                 side)
+{
+  const double face = side == 0 ? options.box.lower_bound(d) : options.box.upper_bound(d);
+  return std::fabs(x[d] - face) < 1e-6 * options.spacing;
 }
 
 /// Points evenly over the box around a shape, from face to face.
@@ -88,6 +101,40 @@ check_surfaces(const Parameters &body, const meshless::Fluid<dim> &fluid)
       "refine the structure's mesh to edges of one spacing, or take a larger spacing");
 }
 
+/// Periods, and whether the fluid can have them.
+template <int dim>
+void
+set_periods(const Parameters            &body,
+            const bool                   with_structures,
+            meshless::FluidOptions<dim> &options)
+{
+  std::vector<std::string> axes = {"x", "y"};
+  if (dim == 3)
+    axes.push_back("z");
+  const auto words = read_words(body, "Periodic", axes);
+  for (unsigned int d = 0; d < dim; ++d)
+    if (words.count(axes[d]) > 0)
+      {
+        options.periodic[d]      = true;
+        options.walls[2 * d]     = meshless::Wall::open;
+        options.walls[2 * d + 1] = meshless::Wall::open;
+        const double least       = options.tessellation.halo_width(options.spacing);
+        if (options.box.side_length(d) < least)
+          throw body.error("Periodic",
+                           "a period is too short for the fluid's spacing",
+                           "the box is " + std::to_string(options.box.side_length(d)) +
+                             " m long in " + axes[d] +
+                             ", an element must not meet its own image within " +
+                             std::to_string(least) + " m",
+                           "make the grid's box longer, or the spacing smaller");
+      }
+  if (!words.empty() && with_structures)
+    throw body.error("Periodic",
+                     "a periodic fluid meets no structures",
+                     "there are structures, and they have no images",
+                     "take the structures out, or set Periodic to nothing");
+}
+
 /// The grid's faces in the fluid's words.
 template <int dim>
 void
@@ -113,6 +160,11 @@ MeshlessSystem<dim>::declare(Declaration &body)
                 "",
                 "m/s",
                 "One expression for each direction; used instead of the constant if not empty.");
+  body.text(
+    "Periodic",
+    "",
+    "Directions, of x, y and z, in which what leaves the grid's box at one end comes in at the "
+    "other, whatever its boundaries there are; empty: none.");
   body.function("Body force",
                 "",
                 "m/s^2",
@@ -136,6 +188,7 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
         continue;
       auto options = meshless::FluidOptions<dim>::read(body, gravity);
       set_box(root, octree, options);
+      set_periods(body, !structure.empty(), options);
       auto &fluid =
         bodies.emplace_back(body.name(), options, octree.triangulation.get_communicator());
       if (body.is_set("Body force"))
@@ -169,7 +222,13 @@ MeshlessSystem<dim>::generate(const Parameters     &body,
       // Points on the shape's boundary are in.
       const dealii::Point<dim> inner = x + 1e-9 * (box.center() - x);
       const int                leaf  = octree.find(x);
-      if (leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()) || !shape->contains(inner))
+      // On a periodic face there is one point for both ends.
+      bool twice = false;
+      for (unsigned int d = 0; d < dim; ++d)
+        twice |= fluid.period.along(d) && on_face(fluid.options, x, d, 1) &&
+                 on_face(fluid.options, box.get_boundary_points().first, d, 0);
+      if (twice || leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()) ||
+          !shape->contains(inner))
         continue;
       fluid.add_point(x, velocity(x), id);
       ++n;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/io/body_views.h>
 #include <coracle/io/coupling_output.h>
 #include <coracle/io/rotation_columns.h>
 
@@ -9,20 +10,6 @@ namespace
 {
 template <int dim>
 using Layout = ParticleLayout<dim>;
-
-/// n neighbouring columns as one field.
-Field
-columns_field(const std::string &name,
-              const std::string &unit,
-              const Columns     &columns,
-              const unsigned int first,
-              const unsigned int n)
-{
-  Field field{name, unit, {}, 1, false};
-  for (unsigned int i = 0; i < n; ++i)
-    field.components.push_back(columns[first + i]);
-  return field;
-}
 
 // Particles without holes: copies are made only if there are any.
 template <int dim>
@@ -35,23 +22,6 @@ rows_present(const MaterialPoints<dim> &points)
     if (!points.is_hole(row))
       rows.push_back(row);
   return rows;
-}
-
-template <int dim>
-NodeView
-node_view(const StructuralBody<dim> &body, std::vector<std::uint64_t> &keys)
-{
-  using Node = NodeColumns<dim>;
-  NodeView view;
-  view.n_nodes   = body.mesh().n_owned_nodes();
-  view.reference = columns_field("reference", "m", body.nodes(), Node::reference, dim);
-  view.current   = columns_field("position", "m", body.nodes(), Node::position, dim);
-  view.velocity  = columns_field("velocity", "m/s", body.nodes(), Node::velocity, dim);
-  keys.clear();
-  for (unsigned int node = 0; node < view.n_nodes; ++node)
-    keys.push_back(body.key(node));
-  view.keys = keys.data();
-  return view;
 }
 
 template <int dim, typename Action>
@@ -123,23 +93,29 @@ template <int dim>
 void
 CouplingOutput<dim>::make_probes(const Parameters &root, Coupling<dim> &coupling)
 {
-  std::vector<std::string> structure_names, particle_names;
+  std::vector<std::string> structure_names, particle_names, fluid_names;
   for_each_structure(coupling.structure, [&](const StructuralBody<dim> &body) {
     structure_names.push_back(body.name());
   });
   for (const auto &body : coupling.points.bodies)
     particle_names.push_back(body.name());
   for (const auto &body : coupling.fluids.bodies)
-    particle_names.push_back(body.name());
+    fluid_names.push_back(body.name());
+  particle_names.insert(particle_names.end(), fluid_names.begin(), fluid_names.end());
   std::vector<std::uint64_t> keys;
-  for (const auto &description :
-       ProbeDescription<dim>::read(root.section("Probes"), structure_names, particle_names))
+  for (const auto &description : ProbeDescription<dim>::read(
+         root.section("Probes"), structure_names, particle_names, fluid_names))
     if (description.kind == ProbeKind::body_point)
       {
         const auto *const body = find_structure(coupling.structure, description.body);
         body_probes.emplace_back(description.body,
                                  BodyPointProbe<dim>(description, node_view(*body, keys), comm));
         BodyPointProbe<dim>::add_columns(description, statistics);
+      }
+    else if (description.kind == ProbeKind::surface)
+      {
+        gauges.emplace_back(description, comm);
+        SurfaceGauge<dim>::add_columns(description, statistics);
       }
     else
       {
@@ -330,6 +306,9 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
   std::vector<std::uint64_t> keys;
   for (const auto &[body, probe] : body_probes)
     probe.set_columns(node_view(*find_structure(coupling.structure, body), keys), statistics);
+  // A case has one meshless fluid.
+  for (const auto &gauge : gauges)
+    gauge.set_columns(coupling.fluids.bodies.front(), statistics);
   for (const auto &[name, probe] : point_probes)
     for (const auto &body : coupling.fluids.bodies)
       if (body.name() == name)
@@ -338,26 +317,10 @@ CouplingOutput<dim>::write_statistics(const Report<dim> &report, Coupling<dim> &
     for (const auto &body : coupling.points.bodies)
       if (body.name() == name)
         {
-          const auto         &points = body.points;
           std::vector<double> pressure;
-          ParticleView        view;
-          view.n_particles = points.n_rows();
-          view.position =
-            columns_field("position", "m", points.columns, Layout<dim>::position, dim);
-          view.velocity =
-            columns_field("velocity", "m/s", points.columns, Layout<dim>::velocity, dim);
-          view.mass     = points.column(Layout<dim>::mass);
-          view.pressure = points.column(Layout<dim>::stress);
-          if (points.layout().n_stress > 1)
-            {
-              for (std::size_t row = 0; row < points.n_rows(); ++row)
-                pressure.push_back(-(points.column(Layout<dim>::stress)[row] +
-                                     points.column(Layout<dim>::stress + 1)[row] +
-                                     points.column(Layout<dim>::stress + 2)[row]) /
-                                   3.);
-              view.pressure = pressure.data();
-            }
-          probe.set_columns(view, statistics, points.reproducible);
+          probe.set_columns(particle_view(body.points, pressure),
+                            statistics,
+                            body.points.reproducible);
         }
   statistics.end_row();
 }

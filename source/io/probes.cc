@@ -13,7 +13,8 @@ namespace coracle
 {
 namespace
 {
-const char *const kind_point = "point", *const kind_body_point = "body point";
+const char *const kind_point = "point", *const kind_body_point = "body point",
+                  *const kind_surface = "surface";
 
 template <int dim>
 dealii::Point<dim>
@@ -51,10 +52,11 @@ ProbeDescription<dim>::declare(Declaration &root)
                                            "statistics.csv");
   probe.choice("Kind",
                kind_body_point,
-               {kind_point, kind_body_point},
+               {kind_point, kind_body_point, kind_surface},
                "body point: the node of a structure or rigid body that is nearest to Position at "
                "the start, carried with the body; point: a place fixed in space that samples "
-               "material points");
+               "material points or points of a meshless fluid; surface: how high a meshless fluid "
+               "stands on the line through Position along gravity");
   probe.text("Body", "", "The body it belongs to");
   probe.list("Position", "", "m", "", "Where it is, in the reference configuration of the body");
   probe.quantity("Radius",
@@ -70,29 +72,34 @@ template <int dim>
 std::vector<ProbeDescription<dim>>
 ProbeDescription<dim>::read(const Parameters               &probes_section,
                             const std::vector<std::string> &structure_bodies,
-                            const std::vector<std::string> &particle_bodies)
+                            const std::vector<std::string> &particle_bodies,
+                            const std::vector<std::string> &fluid_bodies)
 {
   std::vector<ProbeDescription> result;
   for (const std::string &name : probes_section.section_names())
     {
       const Parameters section = probes_section.section(name);
       ProbeDescription probe;
-      probe.name = name;
-      probe.body = section.text("Body");
-      probe.kind =
-        (section.choice("Kind") == kind_point ? ProbeKind::point : ProbeKind::body_point);
-      probe.position = section.point<dim>("Position");
-      probe.radius   = section.quantity("Radius");
+      probe.name             = name;
+      probe.body             = section.text("Body");
+      const std::string kind = section.choice("Kind");
+      probe.kind             = kind == kind_point     ? ProbeKind::point
+                               : kind == kind_surface ? ProbeKind::surface
+                                                      : ProbeKind::body_point;
+      probe.position         = section.point<dim>("Position");
+      probe.radius           = section.quantity("Radius");
 
       const bool  samples_particles = (probe.kind == ProbeKind::point);
-      const auto &allowed           = (samples_particles ? particle_bodies : structure_bodies);
+      const auto &allowed           = samples_particles                  ? particle_bodies
+                                      : probe.kind == ProbeKind::surface ? fluid_bodies
+                                                                         : structure_bodies;
       if (!contains(allowed, probe.body))
         throw section.error("Body",
                             "a probe has no body it could belong to",
-                            "'" + probe.body + "', but a probe of kind '" + section.choice("Kind") +
-                              "' needs " +
-                              (samples_particles ? "a material point body"
-                                                 : "a structure or rigid body"),
+                            "'" + probe.body + "', but a probe of kind '" + kind + "' needs " +
+                              (samples_particles                  ? "a material point body"
+                               : probe.kind == ProbeKind::surface ? "a meshless fluid"
+                                                                  : "a structure or rigid body"),
                             "choose one of these: " + joined(allowed));
       if (!section.is_set("Position"))
         throw section.error("Position",

@@ -14,6 +14,7 @@ Fluid<dim>::Fluid(const std::string &name, const FluidOptions<dim> &options, con
   : columns(Layout::n_columns)
   , halo(comm)
   , options(options)
+  , period(options.box, options.periodic)
   , body_name(name)
   , comm(comm)
   , pressure_system(comm)
@@ -57,6 +58,21 @@ Fluid<dim>::add_point(const dealii::Point<dim> &position,
 
 template <int dim>
 void
+Fluid<dim>::wrap()
+{
+  for (std::size_t i = 0; i < columns.size() && period.any(); ++i)
+    {
+      dealii::Point<dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = columns[Layout::position + d][i];
+      x = period.wrapped(x);
+      for (unsigned int d = 0; d < dim; ++d)
+        columns[Layout::position + d][i] = x[d];
+    }
+}
+
+template <int dim>
+void
 Fluid<dim>::fill_cloud()
 {
   const std::size_t n = columns.size();
@@ -92,11 +108,12 @@ Fluid<dim>::remesh(const bool may_balance)
 {
   const double old_kinetic = energy.kinetic;
   next_id                  = mpi::max(next_id, comm);
+  wrap();
   fill_cloud();
   if (may_balance)
     balance();
   add_structure_points();
-  halo.rebuild(points, options.tessellation.halo_width(options.spacing));
+  halo.rebuild(points, options.tessellation.halo_width(options.spacing), period);
   halo.update(velocity);
   halo.update(pressure);
   halo.update(walls);
@@ -137,7 +154,7 @@ Fluid<dim>::find_volume()
   // At the start, and after loading, there is nothing to compare with.
   if (moved_boundary)
     {
-      const auto change = volume_change(*moved_boundary, boundary_of(points, mesh), comm);
+      const auto change = volume_change(*moved_boundary, boundary_of(points, mesh), comm, period);
       volume_appeared += change.appeared;
       volume_disappeared += change.disappeared;
     }

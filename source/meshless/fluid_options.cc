@@ -141,12 +141,14 @@ FluidOptions<dim>::declare(Declaration &body)
                 10.);
   body.quantity(
     "Merge tolerance",
-    "1e-6",
+    "0",
     "1",
     "",
     "Share of the spacing within which centres of empty spheres count as one, so that the "
-    "simplices of one sphere are one element.",
-    1e-12,
+    "simplices of one sphere are one element, and below which the height of a simplex is "
+    "none. 0: 1e-6 in the plane; 1e-3 in space, where flatter ones would spoil the pressure's "
+    "system.",
+    0.,
     0.1);
   declare_refill(body);
   declare_solver(body);
@@ -163,7 +165,8 @@ FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gr
   o.tessellation.alpha = or_else(body.quantity("Alpha"), dim == 2 ? 1.3 : 1.5);
   o.surface_alpha =
     std::min(o.tessellation.alpha, or_else(body.quantity("Surface alpha"), dim == 2 ? 0.85 : 1.05));
-  o.tessellation.merge_tolerance = body.quantity("Merge tolerance");
+  o.tessellation.merge_tolerance =
+    or_else(body.quantity("Merge tolerance"), dim == 2 ? 1e-6 : 1e-3);
   o.refill.enabled               = body.flag("Refill");
   o.refill.nearest               = body.quantity("Nearest points");
   o.refill.nearest_to_wall       = body.quantity("Nearest to wall");

@@ -52,7 +52,7 @@ Fluid<dim>::new_positions(std::vector<dealii::Point<dim>> &x) const
       x[i][d] = columns[Layout::position + d][i];
   for (std::size_t i = n_cloud; i < points.n_own; ++i)
     x[i] = points.position[i] + last_dt * moving[i];
-  halo.update(x);
+  halo.update_positions(x);
 }
 
 template <int dim>
@@ -93,7 +93,7 @@ Fluid<dim>::find_strays(std::vector<unsigned char> &taken_out)
   for (std::size_t i = 0; i < n_cloud; ++i)
     for (unsigned int d = 0; d < dim && !taken_out[i]; ++d)
       if (const double x = columns[Layout::position + d][i];
-          x < corners.first[d] || x > corners.second[d])
+          !period.along(d) && (x < corners.first[d] || x > corners.second[d]))
         {
           taken_out[i] = 1;
           ++n;

@@ -41,9 +41,9 @@ Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
   halo.update(moving);
   for (unsigned int iteration = 0; iteration < options.n_iterations; ++iteration)
     {
-      timed("elements", [&] { move_elements(dt, iteration); });
+      timed("elements", [&] { move_elements(dt, iteration, timed); });
       timed("predictor", [&] { predict(time, dt); });
-      timed("pressure", [&] { solve_pressure(dt, iteration); });
+      timed("pressure", [&] { solve_pressure(dt, iteration, timed); });
       timed("correction", [&] { correct(dt); });
     }
   timed("move", [&] {
@@ -53,11 +53,11 @@ Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
   check_numbers();
 }
 
-// Elements halfway along the motion known so far. Connections stay, so that the pattern and, where
-// elements have changed little, the preconditioner of the first iteration serve them all.
+// Elements halfway along the motion known so far. Connections stay, so that the pattern and, in the
+// plane, the preconditioner of the first iteration serve them all.
 template <int dim>
 void
-Fluid<dim>::move_elements(const double dt, const unsigned int iteration)
+Fluid<dim>::move_elements(const double dt, const unsigned int iteration, TimingTable &timed)
 {
   scratch.resize(moving.size());
   for (std::size_t i = 0; i < moving.size(); ++i)
@@ -66,42 +66,54 @@ Fluid<dim>::move_elements(const double dt, const unsigned int iteration)
   FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(moved_volume);
   find_surface_areas();
   if (iteration == 0)
-    {
+    timed("pattern", [&] {
       pressure_system.reinit(mesh, halo);
       if (options.viscosity > 0)
         viscous_system.reinit(mesh, halo);
-    }
+    });
 }
 
 template <int dim>
 void
 Fluid<dim>::predict(const double time, const double dt)
 {
-  predicted = velocity;
-  if (options.viscosity > 0)
-    diffuse(dt);
+  std::vector<Vector> acceleration(points.n_own, options.gravity);
   if (body_force)
-    body_force->set_time(time + 0.5 * dt);
-  for (std::size_t i = 0; i < points.n_own; ++i)
     {
-      predicted[i] += dt * options.gravity;
-      if (body_force)
+      body_force->set_time(time + 0.5 * dt);
+      for (std::size_t i = 0; i < points.n_own; ++i)
         for (unsigned int d = 0; d < dim; ++d)
-          predicted[i][d] += dt * body_force->value(points.position[i] + scratch[i], d);
+          acceleration[i][d] += body_force->value(points.position[i] + scratch[i], d);
     }
+  predicted = velocity;
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    predicted[i] += dt * acceleration[i];
+  if (options.viscosity > 0)
+    diffuse(dt, acceleration);
   halo.update(predicted);
 }
 
-// The change of velocity by viscosity, which is none where walls hold it.
+// Viscosity acts on what forces leave to it once the pressure known so far has taken its part: what
+// pressure balances must not be smoothed, and what it does not must be, or a driven channel would
+// be too fast by theta dt f. Where walls hold the velocity viscosity changes nothing.
 template <int dim>
 void
-Fluid<dim>::diffuse(const double dt)
+Fluid<dim>::diffuse(const double dt, const std::vector<Vector> &acceleration)
 {
   const double               nu = options.viscosity / options.density;
-  std::vector<Vector>        force;
+  std::vector<Vector>        force, balanced(acceleration);
   std::vector<double>        change(points.n_own), driving(points.n_own);
   std::vector<unsigned char> fixed(points.size());
   FluidOperators<dim>(mesh, moved_rules, halo).laplacian(velocity, force);
+  // Before the first solution, as if pressure balanced everything.
+  if (pressure_solves > 0)
+    {
+      FluidOperators<dim>(mesh, moved_rules, halo).gradient(pressure, gradient);
+      for (std::size_t i = 0; i < points.n_own; ++i)
+        if (!isolated[i])
+          balanced[i] =
+            (gradient[i] - pressure[i] * surface_area[i]) / (options.density * moved_volume[i]);
+    }
   for (unsigned int d = 0; d < dim; ++d)
     {
       for (std::size_t i = 0; i < points.size(); ++i)
@@ -116,12 +128,14 @@ Fluid<dim>::diffuse(const double dt)
       viscous_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::diagonal);
       for (std::size_t i = 0; i < points.n_own; ++i)
         {
-          driving[i] = -dt * nu * force[i][d];
-          change[i]  = 0;
+          const double left = moved_volume[i] * (acceleration[i][d] - balanced[i][d]);
+          driving[i]        = dt * (left - nu * force[i][d]);
+          change[i]         = 0;
         }
       viscous_system.solve(driving, change, options.solver);
       for (std::size_t i = 0; i < points.n_own; ++i)
-        predicted[i][d] += change[i];
+        if (!fixed[i])
+          predicted[i][d] = velocity[i][d] + change[i] + dt * balanced[i][d];
     }
 }
 
@@ -213,7 +227,7 @@ Fluid<dim>::add_surface_terms(double *result, const double *p)
 
 template <int dim>
 void
-Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
+Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, TimingTable &timed)
 {
   const double theta = options.time_weight, factor = options.density / (theta * dt);
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -243,18 +257,23 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration)
           for (unsigned int d = 0; d < dim; ++d)
             surface[i] += options.density / theta * area[d] * area[d] * node.inverse_mass[d];
       }
-  pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure);
-  if (iteration == 0)
-    pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
+  timed("matrix", [&] { pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure); });
+  // In space flat elements change so much between iterations that the old one does not fit.
+  if (iteration == 0 || dim == 3)
+    timed("multigrid", [&] {
+      pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
+    });
   surface_pressure.resize(points.size());
   pushed.resize(points.size());
-  last_pressure_solve = pressure_system.solve(right_side,
-                                              pressure,
-                                              options.solver,
-                                              [this](double *result, const double *p) {
-                                                add_surface_terms(result, p);
-                                                add_rigid_bodies(result, p);
-                                              });
+  last_pressure_solve = timed("solve", [&] {
+    return pressure_system.solve(right_side,
+                                 pressure,
+                                 options.solver,
+                                 [this](double *result, const double *p) {
+                                   add_surface_terms(result, p);
+                                   add_rigid_bodies(result, p);
+                                 });
+  });
   ++pressure_solves;
   pressure_iterations += last_pressure_solve.iterations;
   unconverged_solves += !last_pressure_solve.converged;

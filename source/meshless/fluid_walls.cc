@@ -29,7 +29,8 @@ Fluid<dim>::clear_structures()
       dealii::Point<dim> x;
       for (unsigned int d = 0; d < dim; ++d)
         x[d] = columns[Layout::position + d][i];
-      bool goes = structures.contains(x);
+      // In the plane of a facet, between its nodes, it would have elements inside the body.
+      bool goes = structures.contains(x) || structures.is_nearer(x, 0.4999 * options.spacing);
       for (std::size_t k = 0; k < nodes.size() && !goes; ++k)
         goes = x.distance_square(nodes[k]) < std::pow(0.5 * options.spacing, 2);
       if (!goes)
@@ -174,6 +175,9 @@ Fluid<dim>::find_flattened(const std::vector<dealii::Point<dim>> &x,
 {
   if (structures.empty())
     return;
+  // In space elements reach into a body across its edges once a point is nearer to the middle of a
+  // square of its nodes than 0.37 of their distance.
+  const double least = std::max(options.refill.nearest_to_wall, dim == 3 ? 0.4 : 0.);
   for (unsigned int e = 0; e < mesh.n_elements(); ++e)
     {
       if (!mesh.is_simplex(e))
@@ -192,8 +196,7 @@ Fluid<dim>::find_flattened(const std::vector<dealii::Point<dim>> &x,
         normal = cross_product_2d(facet[1] - facet[0]);
       else
         normal = cross_product_3d(facet[1] - facet[0], facet[2] - facet[0]);
-      if (std::fabs((x[tip] - facet[0]) * normal) <
-          options.refill.nearest_to_wall * points.spacing[tip] * normal.norm())
+      if (std::fabs((x[tip] - facet[0]) * normal) < least * points.spacing[tip] * normal.norm())
         marks[tip] += 1;
     }
 }

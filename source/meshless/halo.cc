@@ -12,10 +12,12 @@ namespace
 template <int dim>
 struct Record
 {
-  dealii::Point<dim> position;
-  double             spacing;
-  std::uint64_t      id;
-  PointKind          kind;
+  /// That of the point, and what is added to it.
+  dealii::Point<dim>     position;
+  dealii::Tensor<1, dim> shift;
+  double                 spacing;
+  std::uint64_t          id;
+  PointKind              kind;
 };
 
 template <int dim>
@@ -33,6 +35,8 @@ struct Corners
       }
     return result;
   }
+
+  Corners moved(const dealii::Tensor<1, dim> &shift) const { return {low + shift, high + shift}; }
 
   double distance_square(const Corners &other) const
   {
@@ -79,7 +83,7 @@ resize(PointCloud<dim> &points, const std::size_t n)
 
 template <int dim>
 void
-Halo::rebuild(PointCloud<dim> &points, const double width)
+Halo::rebuild(PointCloud<dim> &points, const double width, const Period<dim> &period)
 {
   n_own_rows = points.n_own;
   resize(points, n_own_rows);
@@ -92,15 +96,17 @@ Halo::rebuild(PointCloud<dim> &points, const double width)
   MPI_Allgather(&mine, sizeof(mine), MPI_BYTE, boxes.data(), sizeof(mine), MPI_BYTE, comm);
 
   std::map<unsigned int, std::vector<Record<dim>>> sent;
-  for (unsigned int r = 0; r < n_ranks; ++r)
-    if (r != me && boxes[r].distance_square(mine) <= width * width)
-      for (unsigned int i = 0; i < n_own_rows; ++i)
-        if (boxes[r].distance_square(points.position[i]) <= width * width)
-          {
-            lent[r].push_back(i);
-            sent[r].push_back(
-              {points.position[i], points.spacing[i], points.id[i], points.kind[i]});
-          }
+  for (const auto &shift : period.shifts())
+    for (unsigned int r = 0; r < n_ranks; ++r)
+      if ((r != me || shift.norm_square() > 0) &&
+          boxes[r].distance_square(mine.moved(shift)) <= width * width)
+        for (unsigned int i = 0; i < n_own_rows; ++i)
+          if (boxes[r].distance_square(points.position[i] + shift) <= width * width)
+            {
+              lent[r].push_back(i);
+              sent[r].push_back(
+                {points.position[i], shift, points.spacing[i], points.id[i], points.kind[i]});
+            }
 
   const auto                                        received = mpi::exchange_values(sent, comm);
   std::vector<std::pair<unsigned int, Record<dim>>> copies;
@@ -110,20 +116,33 @@ Halo::rebuild(PointCloud<dim> &points, const double width)
   std::vector<unsigned int> order(copies.size()), place(copies.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](const unsigned int a, const unsigned int b) {
-    return copies[a].second.id < copies[b].second.id;
+    const auto &first = copies[a].second, &second = copies[b].second;
+    if (first.id != second.id)
+      return first.id < second.id;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (first.shift[d] != second.shift[d])
+        return first.shift[d] < second.shift[d];
+    return false;
   });
 
   resize(points, n_own_rows + copies.size());
   owner_of_copy.resize(copies.size());
+  images.clear();
   for (unsigned int c = 0; c < copies.size(); ++c)
     {
       const auto &[rank, record]      = copies[order[c]];
       place[order[c]]                 = n_own_rows + c;
       owner_of_copy[c]                = rank;
-      points.position[n_own_rows + c] = record.position;
+      points.position[n_own_rows + c] = record.position + record.shift;
       points.spacing[n_own_rows + c]  = record.spacing;
       points.id[n_own_rows + c]       = record.id;
       points.kind[n_own_rows + c]     = record.kind;
+      if (record.shift.norm_square() > 0)
+        {
+          auto &[copy, shift] = images.emplace_back(c, std::array<double, 3>{});
+          for (unsigned int d = 0; d < dim; ++d)
+            shift[d] = record.shift[d];
+        }
     }
   for (unsigned int c = 0; c < copies.size(); ++c)
     borrowed[copies[c].first].push_back(place[c]);
@@ -143,6 +162,6 @@ Halo::exchange(std::map<unsigned int, mpi::Buffer> &sent,
   MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
 }
 
-template void Halo::rebuild(PointCloud<2> &, const double);
-template void Halo::rebuild(PointCloud<3> &, const double);
+template void Halo::rebuild(PointCloud<2> &, const double, const Period<2> &);
+template void Halo::rebuild(PointCloud<3> &, const double, const Period<3> &);
 } // namespace coracle::meshless

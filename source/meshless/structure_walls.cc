@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/contact/nearest_point.h>
 #include <coracle/meshless/structure_walls.h>
 
 #include <algorithm>
@@ -92,6 +93,27 @@ StructureWalls<dim>::contains(const dealii::Point<dim> &x) const
   for (const Simplex &facet : facets)
     sum += angle(facet, x);
   return std::fabs(sum) > dealii::numbers::PI * (dim == 2 ? 1 : 2);
+}
+
+template <int dim>
+bool
+StructureWalls<dim>::is_nearer(const dealii::Point<dim> &x, const double reach) const
+{
+  for (unsigned int d = 0; d < dim; ++d)
+    if (x[d] < low[d] - reach || x[d] > high[d] + reach)
+      return false;
+  for (const Simplex &facet : facets)
+    {
+      double square;
+      if constexpr (dim == 2)
+        square = contact::nearest_point(x, facet).distance_square;
+      else
+        square = contact::nearest_point_triangle(x, {facet[0], facet[1], facet[2], facet[2]})
+                   .distance_square;
+      if (square < reach * reach)
+        return true;
+    }
+  return false;
 }
 
 template <int dim>

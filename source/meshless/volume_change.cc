@@ -69,16 +69,25 @@ gather(const std::map<unsigned int, std::vector<CountedFacet<dim>>> &sent, const
 
 /// Volume of the cone from a point to the facet, positive where the facet looks away from it.
 double
-cone(const BoundaryFacet<2> &facet, const dealii::Point<2> &apex)
+cone(const std::array<Tensor<1, 2>, 2> &x)
 {
-  return (facet.position[0] - apex) * cross_product_2d(facet.position[1] - apex) / 2.;
+  return x[0] * cross_product_2d(x[1]) / 2.;
 }
 
 double
-cone(const BoundaryFacet<3> &facet, const dealii::Point<3> &apex)
+cone(const std::array<Tensor<1, 3>, 3> &x)
 {
-  return (facet.position[0] - apex) *
-         cross_product_3d(facet.position[1] - apex, facet.position[2] - apex) / 6.;
+  return x[0] * cross_product_3d(x[1], x[2]) / 6.;
+}
+
+template <int dim>
+double
+cone(const BoundaryFacet<dim> &facet, const dealii::Point<dim> &apex, const Period<dim> &period)
+{
+  std::array<Tensor<1, dim>, dim> x;
+  for (unsigned int i = 0; i < dim; ++i)
+    x[i] = period.nearest(facet.position[i] - apex);
+  return cone(x);
 }
 
 /// Number facets so that those of one closed surface have the same number.
@@ -117,13 +126,13 @@ surfaces(const std::vector<CountedFacet<dim>> &facets)
 
 template <int dim>
 VolumeChange
-measure(const std::vector<CountedFacet<dim>> &facets)
+measure(const std::vector<CountedFacet<dim>> &facets, const Period<dim> &period)
 {
   const auto          surface = surfaces(facets);
   std::vector<double> volume(facets.size(), 0.);
   for (unsigned int f = 0; f < facets.size(); ++f)
     volume[surface[f]] +=
-      facets[f].count * cone(facets[f].facet, facets[surface[f]].facet.position[0]);
+      facets[f].count * cone(facets[f].facet, facets[surface[f]].facet.position[0], period);
   VolumeChange result;
   for (const double v : volume)
     (v > 0. ? result.appeared : result.disappeared) += std::abs(v);
@@ -149,7 +158,8 @@ template <int dim>
 VolumeChange
 volume_change(const std::vector<BoundaryFacet<dim>> &before,
               const std::vector<BoundaryFacet<dim>> &after,
-              const MPI_Comm                         comm)
+              const MPI_Comm                         comm,
+              const Period<dim>                     &period)
 {
   // What has not changed here has not changed.
   std::vector<CountedFacet<dim>> changed;
@@ -167,7 +177,7 @@ volume_change(const std::vector<BoundaryFacet<dim>> &before,
   sent.clear();
   if (!changed.empty())
     sent[0] = changed;
-  const VolumeChange sum = measure(gather(sent, comm));
+  const VolumeChange sum = measure(gather(sent, comm), period);
   return {mpi::sum(sum.appeared, comm), mpi::sum(sum.disappeared, comm)};
 }
 
@@ -176,7 +186,8 @@ volume_change(const std::vector<BoundaryFacet<dim>> &before,
                                                        const Tessellation<dim> &);                \
   template VolumeChange                    volume_change(const std::vector<BoundaryFacet<dim>> &, \
                                                          const std::vector<BoundaryFacet<dim>> &, \
-                                                         const MPI_Comm);
+                                                         const MPI_Comm,                          \
+                                                         const Period<dim> &);
 INSTANTIATE(2)
 INSTANTIATE(3)
 #undef INSTANTIATE

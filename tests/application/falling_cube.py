@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cube in meshless water floats at Archimedes' draught, also where it has a tenth of the water's density;
-one that falls in dives, comes up, and neither makes nor takes water or energy."""
+one that falls in dives, comes up, and neither makes nor takes water or energy; also in space."""
 from run_case import Test
 
 test = Test()
@@ -23,4 +23,15 @@ test.band("fall: the cube dives below its draught", min(one["cube.centre.y [m]"]
 test.band("fall: it comes up again", one["cube.velocity.y [m/s]"][-1], 0.1, 1)
 test.band("fall: drift of the water's volume", max(map(abs, one["water.volume_drift"])), 0, 0.03)
 test.agree("fall: height on 1 and 2 ranks", one["cube.centre.y [m]"][-1], two["cube.centre.y [m]"][-1], 1e-7)
+
+# In space, held upright: the water that climbs the sides makes it deeper by half a spacing and more.
+space = {"Output/Particle format": "none", "Bodies/cube/Free directions": "y", "End time": "0.4",
+         "Bodies/cube/Mesh/Lower corner": "0.3, 0.3, 0.3", "Bodies/cube/Mesh/Upper corner": "0.5, 0.5, 0.5"}
+result = test.run("falling_cube/space.prm", space)
+test.check("space: the verdict is OK", "verdict: OK" in result.text)
+heights = result["cube.centre.y [m]"]
+test.band("space: rise over the draught's height, in spacings", (max(heights) - 0.4) / 0.04, -0.3, 0.3)
+test.band("space: fall below it, in spacings", (min(heights) - 0.4) / 0.04, -0.75, 0.3)
+test.band("space: drift of the water's volume", max(map(abs, result["water.volume_drift"])), 0, 0.02)
+test.band("space: solutions that did not converge", result["water.pressure.unconverged"][-1], 0, 0)
 test.finish()

@@ -173,7 +173,8 @@ test_probes()
                  "    set Position = 0, 0\n    set Radius = 0.5\n  end\n"
                  "end\n");
   const Parameters root = file.parameters();
-  const auto  probes = ProbeDescription<2>::read(root.section("Probes"), {"obstacle"}, {"water"});
+  const auto       probes =
+    ProbeDescription<2>::read(root.section("Probes"), {"obstacle"}, {"water"}, {});
   const bool  first_is_tip = (probes[0].name == "tip");
   const auto &tip          = probes[first_is_tip ? 0 : 1];
   const auto &gauge        = probes[first_is_tip ? 1 : 0];
@@ -238,12 +239,16 @@ test_probes()
   for (const std::string bad : {"Body = water",
                                 "Kind = point\nset Body = obstacle",
                                 "Body = obstacle",
+                                "Kind = surface\nset Body = water",
                                 "Kind = point\nset Body = water\nset Position = 1, 1"})
     {
       file.read_text("subsection Probes\nsubsection tip\nset " + bad + "\nend\nend\n");
       try
         {
-          ProbeDescription<2>::read(file.parameters().section("Probes"), {"obstacle"}, {"water"});
+          ProbeDescription<2>::read(file.parameters().section("Probes"),
+                                    {"obstacle"},
+                                    {"water"},
+                                    {"oil"});
           deallog << "a wrong probe was passed over" << std::endl;
         }
       catch (const UserError &error)

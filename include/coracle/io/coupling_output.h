@@ -8,6 +8,7 @@
 #include <coracle/io/particle_output.h>
 #include <coracle/io/probes.h>
 #include <coracle/io/report.h>
+#include <coracle/io/surface_gauge.h>
 
 #include <memory>
 
@@ -66,6 +67,7 @@ private:
   /// Of all meshes together when probes looked for their nodes.
   unsigned int                                         mesh_changes = 0;
   std::vector<std::pair<std::string, PointProbe<dim>>> point_probes;
+  std::vector<SurfaceGauge<dim>>                       gauges;
   EnergyBalance                                        balance;
   /// Per body (solids, rigids, material points): momentum from contact at the last report [N s].
   std::vector<dealii::Tensor<1, dim>> reported_momentum;

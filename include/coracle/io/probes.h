@@ -22,7 +22,9 @@ enum class ProbeKind
   /// A place fixed in space: samples the particles of a body that are within a radius.
   point,
   /// A place of a structure or rigid body, carried with it: the node nearest to it at the start.
-  body_point
+  body_point,
+  /// A line along gravity: how high a meshless fluid stands there, see SurfaceGauge.
+  surface
 };
 
 /// One section `Probes/<name>`.
@@ -40,10 +42,12 @@ struct ProbeDescription
 
   /// Adds section `Probes` to the root.
   static void declare(Declaration &root);
-  /// Checks that each body exists and fits the kind; a UserError otherwise.
+  /// Checks that each body exists and fits the kind; a UserError otherwise. Meshless fluids are
+  /// among the particle bodies too.
   static std::vector<ProbeDescription> read(const Parameters               &probes_section,
                                             const std::vector<std::string> &structure_bodies,
-                                            const std::vector<std::string> &particle_bodies);
+                                            const std::vector<std::string> &particle_bodies,
+                                            const std::vector<std::string> &fluid_bodies);
 };
 
 /// The nodes of a structure or rigid body that this rank owns, viewed where they lie.

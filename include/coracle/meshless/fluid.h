@@ -31,18 +31,21 @@ struct FluidLayout
  *
  * Points that start on a face of the box, or reach it, slide on it from then on
  * (slip) or stay where they are (stick), so that the fluid's elements end in the
- * wall without a gap. A point without elements is a drop in free flight.
+ * wall without a gap. A point without elements is a drop in free flight. Where the
+ * box is periodic, images of points beyond one face are copies as those of other
+ * ranks' points are; points are moved back into the box before new elements.
  *
  * A step splits the momentum equation (Eqs. 27, 29, 31; the mass matrix missing
  * in 31 is put back). With U^0 the old velocity, theta the time weight, and all
  * integrals over the elements halfway along the step,
  *
- *   (M + theta dt nu K) (U' - U^0) = - dt nu K U^0,    U* = U' + dt f
+ *   (M + theta dt nu K) (U' - U^0) = dt (M (f - r) - nu K U^0),    U* = U' + dt r
  *   (theta dt / rho) S P = B (theta U* + (1 - theta) U^0)
  *   M U^1 = M U* - (dt / rho) B^T P
  *   X^1 = X^0 + dt (theta U^1 + (1 - theta) U^0).
  *
- * U* is left free at walls, so that a linear pressure is exact; the walls'
+ * with r = M^-1 B^T P / rho of the pressure known so far (of the step before, then of
+ * the iteration before). U* is left free at walls, so that a linear pressure is exact; the walls'
  * condition is that of the pressure equation, and is set in U^1. Elements move
  * by a velocity without divergence on the halfway elements, which keeps areas
  * exactly in the plane, and volumes to third order of the step in space.
@@ -87,7 +90,7 @@ public:
   /// Impulses of the step on rigid bodies, the same on all ranks, and on nodes of `structures`.
   std::vector<typename StructureWalls<dim>::Push> rigid_impulses;
   std::vector<Vector>                             node_impulses;
-  /// Points that start in a structure, or nearer to a node of one than half a spacing, go.
+  /// Points that start in a structure, or nearer to a facet of one than half a spacing, go.
   /// Collective.
   void clear_structures();
 
@@ -147,19 +150,21 @@ public:
   /// Acceleration besides gravity, or none.
   std::shared_ptr<dealii::Function<dim>> body_force;
   const FluidOptions<dim>                options;
+  const Period<dim>                      period;
 
 private:
+  void          wrap();
   void          fill_cloud();
   void          find_free_surface();
   unsigned int  held_walls(const std::size_t row) const;
   void          set_wall_velocity(const std::size_t row, Vector &v) const;
-  void          move_elements(const double dt, const unsigned int iteration);
+  void          move_elements(const double dt, const unsigned int iteration, TimingTable &timed);
   void          predict(const double time, const double dt);
-  void          diffuse(const double dt);
+  void          diffuse(const double dt, const std::vector<Vector> &acceleration);
   Vector        facet_area(const typename Tessellation<dim>::Facet &facet) const;
   void          find_surface_areas();
   void          add_surface_terms(double *result, const double *p);
-  void          solve_pressure(const double dt, const unsigned int iteration);
+  void          solve_pressure(const double dt, const unsigned int iteration, TimingTable &timed);
   void          correct(const double dt);
   void          move(const double dt);
   void          balance();

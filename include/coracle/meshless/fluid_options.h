@@ -55,6 +55,8 @@ struct FluidOptions
   dealii::Tensor<1, dim>    gravity;
   dealii::BoundingBox<dim>  box;
   std::array<Wall, 2 * dim> walls{};
+  /// By direction: what leaves the box at one end comes in at the other; its faces there are open.
+  std::array<bool, dim> periodic{};
 
   /// Entries of a body of the kind `meshless fluid`, without those of its shape and start.
   static void declare(Declaration &body);

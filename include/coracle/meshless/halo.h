@@ -2,6 +2,7 @@
 #pragma once
 
 #include <coracle/base/mpi.h>
+#include <coracle/meshless/period.h>
 #include <coracle/meshless/point_cloud.h>
 
 #include <algorithm>
@@ -10,8 +11,9 @@
 namespace coracle::meshless
 {
 /**
- * Copies of other ranks' points that are near this rank's own, and columns of
- * values on their way between points and their copies. Every function is
+ * Copies of other ranks' points that are near this rank's own, among them images
+ * of points beyond a periodic face, also of own ones; and columns of values on
+ * their way between points and their copies. An image has the id of its point. Every function is
  * collective; a rank without points takes part.
  */
 class Halo
@@ -20,9 +22,9 @@ public:
   explicit Halo(const MPI_Comm comm) : comm(comm) {}
 
   /// Forget all copies, and append those of at least all points within `width` [m] of an own one,
-  /// by rising id.
+  /// by rising id. No period is shorter than `width`.
   template <int dim>
-  void rebuild(PointCloud<dim> &points, const double width);
+  void rebuild(PointCloud<dim> &points, const double width, const Period<dim> &period = {});
 
   /// Rows behind the own ones become what their owners have; the column is resized to fit.
   template <typename T>
@@ -30,6 +32,16 @@ public:
   {
     column.resize(n_own_rows + n_copies());
     receive(column, lent, borrowed, [](T &row, const T &value) { row = value; });
+  }
+
+  /// The same for places: images are a period away from what their owners have.
+  template <int dim>
+  void update_positions(std::vector<dealii::Point<dim>> &position) const
+  {
+    update(position);
+    for (const auto &[copy, shift] : images)
+      for (unsigned int d = 0; d < dim; ++d)
+        position[n_own_rows + copy][d] += shift[d];
   }
 
   /// What copies hold is added to their owners' rows, in the order of the ranks, and becomes zero.
@@ -80,5 +92,7 @@ private:
   /// By rank: own rows that are copies there, and rows that are copies of that rank's.
   Rows                      lent, borrowed;
   std::vector<unsigned int> owner_of_copy;
+  /// Copies that are images, counted from the first copy, and how far they are from their points.
+  std::vector<std::pair<unsigned int, std::array<double, 3>>> images;
 };
 } // namespace coracle::meshless

@@ -51,6 +51,8 @@ public:
 
   /// Is the point inside a closed body, by the angle that the facets fill as seen from it?
   bool contains(const dealii::Point<dim> &x) const;
+  /// Is a facet of a closed body nearer to the point than this [m]?
+  bool is_nearer(const dealii::Point<dim> &x, const double reach) const;
   /// Longest edge of a facet [m].
   double longest_edge() const;
 

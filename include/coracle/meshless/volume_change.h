@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <coracle/meshless/period.h>
 #include <coracle/meshless/tessellation.h>
 
 #include <mpi.h>
@@ -39,6 +40,8 @@ struct VolumeChange
  *
  * @param before boundary of the old tessellation, after its points have moved
  * @param after  boundary of the new one
+ * @param period where there is one, a surface's facets are taken at the places nearest to its
+ *               first; it must be shorter than half a period
  * @return sums over all ranks, on all ranks. Collective.
  *
  * Facets travel to the rank that compares them; those that have changed, to rank 0.
@@ -46,5 +49,6 @@ struct VolumeChange
 template <int dim>
 VolumeChange volume_change(const std::vector<BoundaryFacet<dim>> &before,
                            const std::vector<BoundaryFacet<dim>> &after,
-                           const MPI_Comm                         comm);
+                           const MPI_Comm                         comm,
+                           const Period<dim>                     &period = {});
 } // namespace coracle::meshless

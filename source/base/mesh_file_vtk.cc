@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh_file_builder.h"
 
+#include <limits>
+
 namespace coracle::internal
 {
 namespace
@@ -58,7 +60,13 @@ read_scalars(TextScanner &in, Cells &cells)
   in.expect("LOOKUP_TABLE");
   in.word();
   for (std::size_t i = 0; i < cells.connections.size(); ++i)
-    cells.ids.push_back(in.natural("MaterialID"));
+    {
+      // deal.II writes -1 for edges and faces without an id.
+      const std::int64_t id = in.integer("MaterialID");
+      if (id < -1 || id >= std::numeric_limits<unsigned int>::max())
+        in.fail(std::to_string(id) + " is no MaterialID");
+      cells.ids.push_back(id == -1 ? 0 : id);
+    }
 }
 
 MeshFile::Kind

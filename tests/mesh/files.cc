@@ -129,8 +129,8 @@ sheet(const std::string &title, const std::string &text)
     }
   catch (const UserError &error)
     {
-      deallog << dim << "-D sheet, " << title << ": " << error.title << " | " << error.found
-              << std::endl;
+      deallog << dim << "-D sheet, " << title << ": " << error.title << " | "
+              << error.found.substr(error.found.rfind('/') + 1) << std::endl;
     }
 }
 } // namespace

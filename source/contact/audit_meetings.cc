@@ -15,6 +15,9 @@ namespace
 constexpr double doubt = 2e-11, smallest_shift = 1e-9, largest_shift = 3e-9, on_at_end = 4e-9,
                  on_at_start = 8e-9, step_off = 2e-8;
 constexpr std::array<double, 2> on = {{on_at_start, on_at_end}};
+/// A point on the surface is thought moved off all that is nearer than this: the other side of a
+/// narrow valley, too.
+constexpr double beside = 4e-8;
 /// A touch is no deeper than this.
 constexpr double depth_of_touch = 4e-9;
 /// Lengths that are smaller than this part of coordinates or of the path are lost in round-off.
@@ -73,10 +76,10 @@ PathAudit<dim>::add(const MovingFacet<dim> &facet)
   near.push_back(facet);
   near.back().size = size;
   for (unsigned int t = 0; t < 2; ++t)
-    near.back().may_touch[t] = extent[t].holds(path[t], 2 * on[t] * size[t]);
+    near.back().may_touch[t] = extent[t].holds(path[t], 2 * beside * size[t]);
 }
 
-/// Finds the simplices that an end of the path is on.
+/// Finds the simplices that an end of the path is on, and if there are any, those beside it.
 template <int dim>
 void
 PathAudit<dim>::touch(const unsigned int end)
@@ -85,15 +88,39 @@ PathAudit<dim>::touch(const unsigned int end)
   for (unsigned int f = 0; f < near.size(); ++f)
     if (near[f].may_touch[end])
       audit_cut::for_each_simplex(path, near[f], [&](const MovingSimplex<dim> &simplex) {
-        const auto &x      = simplex[end];
-        const auto  normal = normal_if_on<dim>(path[end], x, on[end] * near[f].size[end]);
+        const auto  &x      = simplex[end];
+        const double size   = near[f].size[end];
+        const auto   normal = normal_if_on<dim>(path[end], x, beside * size);
         if (normal.norm_square() == 0)
           return;
         auto inward = -path[end];
         for (const auto &v : x)
           inward += v / dim;
-        touched.push_back({normal, inward / std::max(inward.norm(), 1e-300), f});
+        const bool is_on = normal_if_on<dim>(path[end], x, on[end] * size).norm_square() > 0;
+        touched.push_back({normal,
+                           inward / std::max(inward.norm(), 1e-300),
+                           f,
+                           is_on,
+                           (path[end] - x[0]) * normal});
       });
+  std::stable_partition(touched.begin(), touched.end(), [](const Touched &one) {
+    return one.is_on;
+  });
+  if (!touched.empty() && !touched[0].is_on)
+    touched.clear();
+}
+
+/// The side that the point belongs to.
+template <int dim>
+int
+PathAudit<dim>::side_of_touched() const
+{
+  dealii::Tensor<1, dim> normal;
+  for (const auto &one : touched)
+    if (one.is_on)
+      normal += one.normal;
+  const auto &facet = near[touched[0].facet];
+  return ((path[1] - path[0]) - (facet.x[1][0] - facet.x[0][0])) * normal > 0 ? -1 : 1;
 }
 
 /// From an end of the path to where the point is thought to be.
@@ -105,17 +132,19 @@ PathAudit<dim>::way_off(const unsigned int end, const int known_side)
   dealii::Tensor<1, dim> way;
   if (touched.empty())
     return way;
+  const int side = (known_side != 0 ? known_side : side_of_touched());
+  // What is beside the point but looks away, as the back of a thin body does, is in nobody's way.
+  touched.erase(std::remove_if(touched.begin(),
+                               touched.end(),
+                               [side](const Touched &one) {
+                                 return !one.is_on && side * one.height <= 0;
+                               }),
+                touched.end());
   double size = std::numeric_limits<double>::max();
   for (const auto &one : touched)
     {
       way += one.normal;
       size = std::min(size, near[one.facet].size[end]);
-    }
-  int side = known_side;
-  if (side == 0)
-    {
-      const auto &facet = near[touched[0].facet];
-      side = (((path[1] - path[0]) - (facet.x[1][0] - facet.x[0][0])) * way > 0 ? -1 : 1);
     }
   way *= side;
   // Away from all of these simplices, or else, where that leads into the body (saddles, folds),

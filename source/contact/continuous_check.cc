@@ -305,7 +305,9 @@ ContinuousCheck<dim>::look_at_contacts(const Surface<dim>    &surface,
       const double size = size_of(contact->facet);
       if (contact->gap < -on_surface * size)
         passed[surface.facets[contact->facet].body] = 1;
-      else if (contact->gap < on_surface * size)
+      // Farther off it needs no help, which in a narrow valley could take it through the other
+      // wall.
+      else if (contact->gap < off_largest * size)
         outward = contact->normal;
     }
   return outward;

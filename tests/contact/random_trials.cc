@@ -10,12 +10,12 @@
 
 template <int dim>
 void
-run(const unsigned long first, const unsigned long last)
+run(const unsigned long first, const unsigned long last, const bool any_shape = false)
 {
   trial::Outcome sum;
   for (unsigned long seed = first; seed <= last; ++seed)
     {
-      trial::Scene<dim> scene(seed, seed % trial::n_shapes, MPI_COMM_WORLD);
+      trial::Scene<dim> scene(seed, any_shape ? -1 : int(seed % trial::n_shapes), MPI_COMM_WORLD);
       const auto        outcome = scene.run();
       sum.crossings += outcome.crossings;
       sum.contacts += outcome.contacts;
@@ -33,4 +33,6 @@ main(int argc, char **argv)
   mpi_initlog();
   run<2>(1, 8);
   run<3>(1, 2);
+  // A point on the edge of a fold of six degrees, on its inner side.
+  run<3>(949, 949, true);
 }

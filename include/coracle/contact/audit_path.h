@@ -103,6 +103,7 @@ public:
 private:
   void                   touch(const unsigned int end);
   dealii::Tensor<1, dim> way_off(const unsigned int end, const int side);
+  int                    side_of_touched() const;
   bool                   in_valley(const int side) const;
   bool                   meet_all(const Path<dim> &moved, const double doubt);
   void                   drop_touches(const Path<dim> &moved, const double depth);
@@ -112,11 +113,14 @@ private:
   std::vector<MovingFacet<dim>> near;
   std::vector<PathEvent<dim>>   events, most;
 
-  /// A simplex that the point is on: unit normal, unit vector towards the middle, index in near.
+  /// A simplex that the point is on or beside: unit normal, unit vector towards the middle, index
+  /// in near; height of the point above it [m].
   struct Touched
   {
     dealii::Tensor<1, dim> normal, inward;
     unsigned int           facet;
+    bool                   is_on;
+    double                 height;
   };
   std::vector<Touched> touched;
 };

@@ -18,6 +18,12 @@ gather(const std::vector<Box> &mine, MPI_Comm communicator)
 {
   return all_to_all(std::vector<std::vector<Box>>(n_ranks(communicator), mine), communicator);
 }
+
+bool
+meets_any(const std::vector<Box> &boxes, const Box &box)
+{
+  return std::any_of(boxes.begin(), boxes.end(), [&box](const Box &b) { return overlap(b, box); });
+}
 } // namespace
 
 template <int dim>
@@ -62,10 +68,8 @@ FacetExchange<dim>::rebuild(const Surface<dim>               &owned,
       };
       for (const auto &facet : owned.facets)
         {
-          const Box box = facet_box(owned, facet, 0.5 * owned.bodies[facet.body].thickness);
-          if (std::none_of(boxes[r].begin(), boxes[r].end(), [&](const Box &b) {
-                return overlap(b, box);
-              }))
+          if (!meets_any(boxes[r],
+                         facet_box(owned, facet, 0.5 * owned.bodies[facet.body].thickness)))
             continue;
           FacetMessage message{{}, facet.body, facet.key};
           for (unsigned int k = 0; k < facet.nodes.size(); ++k)

@@ -79,6 +79,25 @@ resize(PointCloud<dim> &points, const std::size_t n)
   points.id.resize(n);
   points.kind.resize(n);
 }
+
+/// Copies in the order of their ids, images of one point in that of their shifts.
+template <int dim>
+std::vector<unsigned int>
+order_of(const std::vector<std::pair<unsigned int, Record<dim>>> &copies)
+{
+  std::vector<unsigned int> order(copies.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](const unsigned int a, const unsigned int b) {
+    const auto &first = copies[a].second, &second = copies[b].second;
+    if (first.id != second.id)
+      return first.id < second.id;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (first.shift[d] != second.shift[d])
+        return first.shift[d] < second.shift[d];
+    return false;
+  });
+  return order;
+}
 } // namespace
 
 template <int dim>
@@ -113,17 +132,8 @@ Halo::rebuild(PointCloud<dim> &points, const double width, const Period<dim> &pe
   for (const auto &[rank, records] : received)
     for (const auto &record : records)
       copies.emplace_back(rank, record);
-  std::vector<unsigned int> order(copies.size()), place(copies.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](const unsigned int a, const unsigned int b) {
-    const auto &first = copies[a].second, &second = copies[b].second;
-    if (first.id != second.id)
-      return first.id < second.id;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (first.shift[d] != second.shift[d])
-        return first.shift[d] < second.shift[d];
-    return false;
-  });
+  const auto                order = order_of(copies);
+  std::vector<unsigned int> place(copies.size());
 
   resize(points, n_own_rows + copies.size());
   owner_of_copy.resize(copies.size());

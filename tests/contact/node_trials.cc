@@ -33,6 +33,6 @@ main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   mpi_initlog();
   deallog << std::boolalpha;
-  run<2>(6);
-  run<3>(2);
+  run<2>(4);
+  run<3>(1);
 }

@@ -239,16 +239,7 @@ template <int dim>
 void
 NodeScene<dim>::predict()
 {
-  std::vector<Vector> pull(surface.nodes.size());
-  for (const auto &f : surface.facets)
-    for (unsigned int k = 0; k < f.nodes.size(); ++k)
-      {
-        const unsigned int a = f.nodes[k], b = f.nodes[(k + 1) % f.nodes.size()];
-        const Vector       stretch =
-          (surface.nodes[b].position - drawn[b]) - (surface.nodes[a].position - drawn[a]);
-        pull[a] += stretch;
-        pull[b] -= stretch;
-      }
+  const auto pull = pull_of_edges(surface, drawn);
   for (auto &body : bodies)
     for (unsigned int i = body.first; i < body.last; ++i)
       {

@@ -81,6 +81,38 @@ struct Problem
       }
   }
 
+  /// Another problem beside this one.
+  void append(const Problem &other)
+  {
+    const unsigned int n_unknowns = unknowns.size(), n_bodies = rigid.size(),
+                       n_entries = rows.entries.size();
+    for (const auto &u : other.unknowns)
+      {
+        unknowns.push_back(u);
+        unknowns.back().key += 77 * n_unknowns;
+      }
+    rigid.insert(rigid.end(), other.rigid.begin(), other.rigid.end());
+    for (auto entry : other.rows.entries)
+      {
+        entry.unknown += n_unknowns;
+        rows.entries.push_back(entry);
+      }
+    for (std::size_t side = 1; side < other.rows.begin.size(); ++side)
+      rows.begin.push_back(n_entries + other.rows.begin[side]);
+    for (auto bodies : other.rows.rigid_body)
+      {
+        for (int &b : bodies)
+          b += (b >= 0 ? n_bodies : 0);
+        rows.rigid_body.push_back(bodies);
+      }
+    for (auto contact : other.contacts)
+      {
+        contact.point = contacts.size();
+        keys.push_back({contact.point, 0});
+        contacts.push_back(contact);
+      }
+  }
+
   double target(const unsigned int c, const double dt) const
   {
     return -std::max(0., contacts[c].gap - contacts[c].distance) / dt;

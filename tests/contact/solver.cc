@@ -2,7 +2,8 @@
 // The contact solver finds the solution that trying all active sets finds, on 1,
 // 2 or 3 ranks (one of them without contacts) alike; friction slides a block with
 // exactly mu g and holds it below; momentum and angular momentum are conserved to
-// round-off, also with a rigid body.
+// round-off, also with a rigid body. Many problems solved as one have their own
+// solutions, although those that are solved first rest while others go on.
 
 #include <deal.II/lac/lapack_full_matrix.h>
 
@@ -122,6 +123,48 @@ compare(const double friction, const bool with_rigid)
           << (worst_oracle < 1e-8) << ", momentum " << (momentum < 1e-13) << std::endl;
 }
 
+/// Many problems as one against each by itself.
+template <int dim>
+void
+many(const double friction)
+{
+  const unsigned int rank                = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD),
+                     n_ranks             = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  const double                        dt = 0.01;
+  Problem<dim>                        whole(9, 0, friction, true);
+  std::vector<dealii::Tensor<1, dim>> expected, expected_rigid;
+  for (unsigned int seed = 0; seed < 40; ++seed)
+    {
+      const Problem<dim> one(9, seed, friction, true);
+      Solver<dim>        solver(sharp(), MPI_COMM_SELF);
+      solver.solve(one.contacts, one.keys, one.rows, one.unknowns, one.rigid, dt);
+      const auto v = solver.velocities();
+      expected.insert(expected.end(), v.nodes.begin(), v.nodes.end());
+      expected_rigid.push_back(v.rigid[0]);
+      if (seed > 0)
+        whole.append(one);
+    }
+  const Problem<dim> part = whole.part(rank, n_ranks);
+  Solver<dim>        solver(sharp(), MPI_COMM_WORLD);
+  solver.solve(part.contacts, part.keys, part.rows, part.unknowns, part.rigid, dt);
+  const auto v     = solver.velocities();
+  double     worst = 0;
+  for (unsigned int i = 0; i < part.unknowns.size(); ++i)
+    worst = std::max(worst, (v.nodes[i] - expected[part.unknowns[i].key / 77]).norm());
+  for (unsigned int b = 0; b < part.rigid.size() && !part.contacts.empty(); ++b)
+    worst = std::max(worst, (v.rigid[b] - expected_rigid[b]).norm());
+  worst = dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD);
+  // On one rank all is there, and momentum can be added up.
+  double momentum = 0;
+  for (unsigned int i = 0; i < part.unknowns.size() && n_ranks == 1; ++i)
+    momentum += (v.nodes[i][1] - part.unknowns[i].velocity[1]) / part.unknowns[i].inverse_mass[1];
+  for (unsigned int b = 0; b < part.rigid.size() && n_ranks == 1; ++b)
+    momentum += (v.rigid[b][1] - part.rigid[b].velocity[1]) / part.rigid[b].inverse_mass[1];
+  deallog << dim << "-D, friction " << friction << ", 40 at once: converged "
+          << solver.report().velocity.converged << ", each as by itself to 1e-7 " << (worst < 1e-7)
+          << ", momentum " << (std::abs(momentum) < 1e-12) << std::endl;
+}
+
 /// A block on a plate: it slides, slows down with mu g, and stays.
 void
 friction()
@@ -223,6 +266,11 @@ main(int argc, char **argv)
         compare<2>(mu, with_rigid);
         compare<3>(mu, with_rigid);
       }
+  for (const double mu : {0., 0.3})
+    {
+      many<2>(mu);
+      many<3>(mu);
+    }
   friction();
   angular_momentum<2>();
   angular_momentum<3>();

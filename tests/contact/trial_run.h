@@ -58,16 +58,7 @@ Scene<dim>::predict_surface()
     }
   if (motions[0].kind == Kind::springs)
     {
-      std::vector<Vector> pull(surface.nodes.size());
-      for (const auto &f : surface.facets)
-        for (unsigned int k = 0; k < f.nodes.size(); ++k)
-          {
-            const unsigned int a = f.nodes[k], b = f.nodes[(k + 1) % f.nodes.size()];
-            const Vector       stretch =
-              (surface.nodes[b].position - drawn[b]) - (surface.nodes[a].position - drawn[a]);
-            pull[a] += stretch;
-            pull[b] -= stretch;
-          }
+      const auto pull = pull_of_edges(surface, drawn);
       for (unsigned int i = 0; i < surface.nodes.size(); ++i)
         surface.nodes[i].velocity += 0.03 / dt * pull[i];
     }

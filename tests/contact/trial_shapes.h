@@ -236,4 +236,23 @@ draw_profile(Random &random, const unsigned int shape)
     }
   return p;
 }
+
+/// What edges of facets that have become longer or shorter pull at their nodes, as springs of
+/// stiffness one [m].
+template <int dim>
+std::vector<dealii::Tensor<1, dim>>
+pull_of_edges(const Surface<dim> &surface, const std::vector<dealii::Point<dim>> &drawn)
+{
+  std::vector<dealii::Tensor<1, dim>> pull(surface.nodes.size());
+  for (const auto &f : surface.facets)
+    for (unsigned int k = 0; k < f.nodes.size(); ++k)
+      {
+        const unsigned int a = f.nodes[k], b = f.nodes[(k + 1) % f.nodes.size()];
+        const auto         stretch =
+          (surface.nodes[b].position - drawn[b]) - (surface.nodes[a].position - drawn[a]);
+        pull[a] += stretch;
+        pull[b] -= stretch;
+      }
+  return pull;
+}
 } // namespace trial

@@ -18,7 +18,6 @@ Fluid<dim>::Fluid(const std::string &name, const FluidOptions<dim> &options, con
   , body_name(name)
   , comm(comm)
   , pressure_system(comm)
-  , viscous_system(comm)
 {}
 
 template <int dim>

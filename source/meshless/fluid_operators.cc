@@ -80,6 +80,23 @@ FluidOperators<dim>::laplacian(const std::vector<Vector> &u, std::vector<Vector>
   halo.sum_to_owners(result);
 }
 
+template <int dim>
+void
+FluidOperators<dim>::laplacian_diagonal(std::vector<double> &result) const
+{
+  result.assign(halo.n_own() + halo.n_copies(), 0.);
+  rules.for_each(tessellation,
+                 [&](const unsigned int *nodes,
+                     const unsigned int  n,
+                     const double        weight,
+                     const double *,
+                     const Vector *gradient) {
+                   for (unsigned int i = 0; i < n; ++i)
+                     result[nodes[i]] += weight * gradient[i].norm_square();
+                 });
+  halo.sum_to_owners(result);
+}
+
 template class FluidOperators<2>;
 template class FluidOperators<3>;
 } // namespace coracle::meshless

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
+#include <coracle/meshless/diffusion_system.h>
 #include <coracle/meshless/fluid.h>
 
 #include <algorithm>
@@ -66,11 +67,7 @@ Fluid<dim>::move_elements(const double dt, const unsigned int iteration, TimingT
   FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(moved_volume);
   find_surface_areas();
   if (iteration == 0)
-    timed("pattern", [&] {
-      pressure_system.reinit(mesh, halo);
-      if (options.viscosity > 0)
-        viscous_system.reinit(mesh, halo);
-    });
+    timed("pattern", [&] { pressure_system.reinit(mesh, halo); });
 }
 
 template <int dim>
@@ -100,43 +97,46 @@ template <int dim>
 void
 Fluid<dim>::diffuse(const double dt, const std::vector<Vector> &acceleration)
 {
-  const double               nu = options.viscosity / options.density;
-  std::vector<Vector>        force, balanced(acceleration);
-  std::vector<double>        change(points.n_own), driving(points.n_own);
-  std::vector<unsigned char> fixed(points.size());
-  FluidOperators<dim>(mesh, moved_rules, halo).laplacian(velocity, force);
+  const double              nu = options.viscosity / options.density;
+  const FluidOperators<dim> apply(mesh, moved_rules, halo);
+  std::vector<Vector>       force, balanced(acceleration), change(points.n_own);
+  apply.laplacian(velocity, force);
   // Before the first solution, as if pressure balanced everything.
   if (pressure_solves > 0)
     {
-      FluidOperators<dim>(mesh, moved_rules, halo).gradient(pressure, gradient);
+      apply.gradient(pressure, gradient);
       for (std::size_t i = 0; i < points.n_own; ++i)
         if (!isolated[i])
           balanced[i] =
             (gradient[i] - pressure[i] * surface_area[i]) / (options.density * moved_volume[i]);
     }
-  for (unsigned int d = 0; d < dim; ++d)
+  std::vector<unsigned char> held(points.n_own);
+  for (std::size_t i = 0; i < points.n_own; ++i)
     {
-      for (std::size_t i = 0; i < points.size(); ++i)
-        {
-          fixed[i] = isolated[i] || is_structure(i);
-          for (unsigned int face = 0; face < 2 * dim; ++face)
-            if (walls[i] >> face & 1)
-              fixed[i] |= options.walls[face] == Wall::stick || face / 2 == d;
-        }
-      viscous_system.assemble(
-        mesh, moved_rules, moved_volume, options.time_weight * dt * nu, fixed);
-      viscous_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::diagonal);
-      for (std::size_t i = 0; i < points.n_own; ++i)
-        {
-          const double left = moved_volume[i] * (acceleration[i][d] - balanced[i][d]);
-          driving[i]        = dt * (left - nu * force[i][d]);
-          change[i]         = 0;
-        }
-      viscous_system.solve(driving, change, options.solver);
-      for (std::size_t i = 0; i < points.n_own; ++i)
-        if (!fixed[i])
-          predicted[i][d] = velocity[i][d] + change[i] + dt * balanced[i][d];
+      force[i] = dt * (moved_volume[i] * (acceleration[i] - balanced[i]) - nu * force[i]);
+      for (unsigned int d = 0; d < dim; ++d)
+        held[i] |= is_held(i, d) << d;
     }
+  DiffusionSystem<dim> system(apply, halo, comm);
+  system.set({moved_volume.begin(), moved_volume.begin() + points.n_own},
+             options.time_weight * dt * nu,
+             held);
+  unconverged_solves += !system.solve(force, change, options.solver).converged;
+  for (std::size_t i = 0; i < points.n_own; ++i)
+    for (unsigned int d = 0; d < dim; ++d)
+      if (!is_held(i, d))
+        predicted[i][d] = velocity[i][d] + change[i][d] + dt * balanced[i][d];
+}
+
+template <int dim>
+bool
+Fluid<dim>::is_held(const std::size_t row, const unsigned int d) const
+{
+  bool held = isolated[row] || is_structure(row);
+  for (unsigned int face = 0; face < 2 * dim; ++face)
+    if (walls[row] >> face & 1)
+      held |= options.walls[face] == Wall::stick || face / 2 == d;
+  return held;
 }
 
 // On the halfway elements.
@@ -261,7 +261,7 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
   // In space flat elements change so much between iterations that the old one does not fit.
   if (iteration == 0 || dim == 3)
     timed("multigrid", [&] {
-      pressure_system.prepare(options.solver, ScalarSystem<dim>::Preconditioner::multigrid);
+      pressure_system.prepare(options.solver);
     });
   surface_pressure.resize(points.size());
   pushed.resize(points.size());

@@ -40,7 +40,6 @@ void
 ScalarSystem<dim>::reinit(const Tessellation<dim> &tessellation, const Halo &halo)
 {
   multigrid.reset();
-  diagonal.reset();
   direct.reset();
   const std::uint64_t n_own = halo.n_own(), first = mpi::offset(n_own, comm);
   number.resize(n_own);
@@ -127,10 +126,9 @@ ScalarSystem<dim>::assemble(const Tessellation<dim>          &tessellation,
 
 template <int dim>
 void
-ScalarSystem<dim>::prepare(const SolverOptions &options, const Preconditioner kind)
+ScalarSystem<dim>::prepare(const SolverOptions &options)
 {
   multigrid.reset();
-  diagonal.reset();
   direct.reset();
   if (is_direct(options))
     {
@@ -138,21 +136,13 @@ ScalarSystem<dim>::prepare(const SolverOptions &options, const Preconditioner ki
       direct->initialize(matrix);
       return;
     }
-  if (kind == Preconditioner::multigrid)
-    {
-      dealii::TrilinosWrappers::PreconditionAMG::AdditionalData data;
-      data.elliptic              = true;
-      data.higher_order_elements = false;
-      data.smoother_sweeps       = 2;
-      data.aggregation_threshold = 1e-3;
-      multigrid.emplace();
-      multigrid->initialize(matrix, data);
-    }
-  else
-    {
-      diagonal.emplace();
-      diagonal->initialize(matrix);
-    }
+  dealii::TrilinosWrappers::PreconditionAMG::AdditionalData data;
+  data.elliptic              = true;
+  data.higher_order_elements = false;
+  data.smoother_sweeps       = 2;
+  data.aggregation_threshold = 1e-3;
+  multigrid.emplace();
+  multigrid->initialize(matrix, data);
 }
 
 template <int dim>
@@ -185,10 +175,8 @@ ScalarSystem<dim>::solve(const std::vector<double> &f,
     {
       if (multigrid)
         cg.solve(system, solution, right_side, *multigrid);
-      else if (direct)
-        cg.solve(system, solution, right_side, Factors{*direct});
       else
-        cg.solve(system, solution, right_side, *diagonal);
+        cg.solve(system, solution, right_side, Factors{*direct});
     }
   catch (const dealii::SolverControl::NoConvergence &)
     {

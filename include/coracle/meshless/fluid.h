@@ -161,6 +161,8 @@ private:
   void          move_elements(const double dt, const unsigned int iteration, TimingTable &timed);
   void          predict(const double time, const double dt);
   void          diffuse(const double dt, const std::vector<Vector> &acceleration);
+  /// Whether component d of a point's velocity is given by a wall, a structure or free flight.
+  bool          is_held(const std::size_t row, const unsigned int d) const;
   Vector        facet_area(const typename Tessellation<dim>::Facet &facet) const;
   void          find_surface_areas();
   void          add_surface_terms(double *result, const double *p);
@@ -195,7 +197,7 @@ private:
   std::string       body_name;
   MPI_Comm          comm;
   ElementRules<dim> rules, moved_rules;
-  ScalarSystem<dim> pressure_system, viscous_system;
+  ScalarSystem<dim> pressure_system;
   /// Of the step: U*, U^1 and the velocity that moves, on own points and copies.
   std::vector<Vector> predicted, corrected, moving, gradient, scratch;
   std::vector<double> moved_volume, right_side;

@@ -33,6 +33,8 @@ public:
   void divergence(const std::vector<Vector> &u, std::vector<double> &result) const;
   /// integral of grad N_i . grad u_d for each component d, K u of Eq. 27 [u m^(dim-2)].
   void laplacian(const std::vector<Vector> &u, std::vector<Vector> &result) const;
+  /// integral of grad N_i . grad N_i [m^(dim-2)].
+  void laplacian_diagonal(std::vector<double> &result) const;
 
 private:
   const Tessellation<dim> &tessellation;

@@ -37,19 +37,13 @@ struct SolverOptions
  * The symmetric system (a M + b S) x = f with one unknown per point: M lumped,
  * S the integrals of grad N_i . grad N_j. Unknowns are numbered by ranks, owned
  * points in their order; the matrix is Trilinos', solved by conjugate gradients
- * with smoothed-aggregation multigrid (ML), by conjugate gradients with the
- * diagonal, or by a factorisation (Amesos). Collective.
+ * with smoothed-aggregation multigrid (ML) or a factorisation (Amesos).
+ * Collective.
  */
 template <int dim>
 class ScalarSystem
 {
 public:
-  enum class Preconditioner
-  {
-    multigrid,
-    diagonal
-  };
-
   explicit ScalarSystem(const MPI_Comm comm) : comm(comm) {}
 
   /// The points and elements of a new tessellation.
@@ -68,7 +62,7 @@ public:
 
   /// The preconditioner for the matrix as it is now; it may serve later matrices that differ
   /// little.
-  void prepare(const SolverOptions &options, const Preconditioner kind);
+  void prepare(const SolverOptions &options);
 
   /// What is added to the matrix where it is applied: (result, x), by own point.
   using Addition = std::function<void(double *, const double *)>;
@@ -100,7 +94,6 @@ private:
   std::vector<unsigned char>                                  fixed_rows;
   Matrix                                                      matrix;
   std::optional<dealii::TrilinosWrappers::PreconditionAMG>    multigrid;
-  std::optional<dealii::TrilinosWrappers::PreconditionJacobi> diagonal;
   std::optional<dealii::TrilinosWrappers::SolverDirect>       direct;
   Vector                                                      solution, right_side;
   dealii::SolverControl                                       control{1, 0., false, false};

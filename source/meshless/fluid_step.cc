@@ -260,9 +260,7 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
   timed("matrix", [&] { pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure); });
   // In space flat elements change so much between iterations that the old one does not fit.
   if (iteration == 0 || dim == 3)
-    timed("multigrid", [&] {
-      pressure_system.prepare(options.solver);
-    });
+    timed("multigrid", [&] { pressure_system.prepare(options.solver); });
   surface_pressure.resize(points.size());
   pushed.resize(points.size());
   last_pressure_solve = timed("solve", [&] {

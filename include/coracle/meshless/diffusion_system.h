@@ -23,9 +23,7 @@ public:
 
   /// @param halo that of the operators
   DiffusionSystem(const FluidOperators<dim> &operators, const Halo &halo, const MPI_Comm comm)
-    : operators(operators)
-    , halo(halo)
-    , comm(comm)
+    : operators(operators), halo(halo), comm(comm)
   {}
 
   /**

@@ -153,14 +153,14 @@ public:
   const Period<dim>                      period;
 
 private:
-  void          wrap();
-  void          fill_cloud();
-  void          find_free_surface();
-  unsigned int  held_walls(const std::size_t row) const;
-  void          set_wall_velocity(const std::size_t row, Vector &v) const;
-  void          move_elements(const double dt, const unsigned int iteration, TimingTable &timed);
-  void          predict(const double time, const double dt);
-  void          diffuse(const double dt, const std::vector<Vector> &acceleration);
+  void         wrap();
+  void         fill_cloud();
+  void         find_free_surface();
+  unsigned int held_walls(const std::size_t row) const;
+  void         set_wall_velocity(const std::size_t row, Vector &v) const;
+  void         move_elements(const double dt, const unsigned int iteration, TimingTable &timed);
+  void         predict(const double time, const double dt);
+  void         diffuse(const double dt, const std::vector<Vector> &acceleration);
   /// Whether component d of a point's velocity is given by a wall, a structure or free flight.
   bool          is_held(const std::size_t row, const unsigned int d) const;
   Vector        facet_area(const typename Tessellation<dim>::Facet &facet) const;

@@ -88,14 +88,14 @@ private:
     return n_unknowns() <= options.direct_up_to;
   }
 
-  MPI_Comm                                                    comm;
-  dealii::IndexSet                                            owned;
-  std::vector<dealii::types::global_dof_index>                number;
-  std::vector<unsigned char>                                  fixed_rows;
-  Matrix                                                      matrix;
-  std::optional<dealii::TrilinosWrappers::PreconditionAMG>    multigrid;
-  std::optional<dealii::TrilinosWrappers::SolverDirect>       direct;
-  Vector                                                      solution, right_side;
-  dealii::SolverControl                                       control{1, 0., false, false};
+  MPI_Comm                                                 comm;
+  dealii::IndexSet                                         owned;
+  std::vector<dealii::types::global_dof_index>             number;
+  std::vector<unsigned char>                               fixed_rows;
+  Matrix                                                   matrix;
+  std::optional<dealii::TrilinosWrappers::PreconditionAMG> multigrid;
+  std::optional<dealii::TrilinosWrappers::SolverDirect>    direct;
+  Vector                                                   solution, right_side;
+  dealii::SolverControl                                    control{1, 0., false, false};
 };
 } // namespace coracle::meshless

@@ -6,7 +6,7 @@
 #include <coracle/base/exceptions.h>
 #include <coracle/io/hdf5_archive.h>
 
-#include "session.h"
+#include "target.h"
 
 extern "C" int
 LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)

@@ -49,6 +49,6 @@ main(int argc, char **argv)
   setenv("OMPI_MCA_io", "romio321", 0);
 
   // Ranks are processes; threads inside them would only compete.
-  dealii::Utilities::MPI::MPI_InitFinalize mpi_session(argc, argv, 1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi_initialization(argc, argv, 1);
   return mpi::run_guarded([&] { return do_what_is_asked(argc, argv); }, MPI_COMM_WORLD);
 }

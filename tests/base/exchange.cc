@@ -62,7 +62,7 @@ test_agree(const unsigned int culprit, const bool user_error)
 int
 main(int argc, char **argv)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi_session(argc, argv, 1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi_initialization(argc, argv, 1);
   MPILogInitAll                            all;
   const unsigned int                       me = mpi::rank(MPI_COMM_WORLD);
 

@@ -87,7 +87,7 @@ test_timer(const unsigned int me)
 int
 main(int argc, char **argv)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi_session(argc, argv, 1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi_initialization(argc, argv, 1);
   MPILogInitAll                            all;
   const unsigned int me = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
   test_log(me, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));

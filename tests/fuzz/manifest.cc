@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <zlib.h>
 
-#include "session.h"
+#include "target.h"
 
 extern "C" int
 LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)

@@ -13,7 +13,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "session.h"
+#include "target.h"
 
 namespace
 {

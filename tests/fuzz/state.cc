@@ -11,7 +11,7 @@
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include "memory_store.h"
-#include "session.h"
+#include "target.h"
 
 namespace
 {

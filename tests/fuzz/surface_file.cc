@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "session.h"
+#include "target.h"
 
 extern "C" int
 LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)

@@ -103,7 +103,7 @@ forge(const CheckpointFolder            &folder,
 int
 main(int argc, char **argv)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi_session(argc, argv, 1);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi_initialization(argc, argv, 1);
   mpi_initlog();
   const std::string last =
     "run/checkpoints/step_0000000005/" + file_of(mpi::n_ranks(MPI_COMM_WORLD) - 1);

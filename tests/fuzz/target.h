@@ -38,9 +38,9 @@ write(const std::string &file_name, const void *data, const std::size_t size)
 inline void
 start()
 {
-  struct Session
+  struct MpiRun
   {
-    Session()
+    MpiRun()
     {
       // Which has to outlive this.
       place();
@@ -49,13 +49,13 @@ start()
       char **arguments = argv;
       mpi = std::make_unique<dealii::Utilities::MPI::MPI_InitFinalize>(argc, arguments, 1);
     }
-    ~Session()
+    ~MpiRun()
     {
       std::error_code ignored;
       std::filesystem::remove_all(place(), ignored);
     }
     std::unique_ptr<dealii::Utilities::MPI::MPI_InitFinalize> mpi;
   };
-  static Session session;
+  static MpiRun mpi_run;
 }
 } // namespace fuzz

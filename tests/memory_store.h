@@ -41,13 +41,37 @@ public:
     block = found->second.block;
     return found->second.bytes;
   }
+  std::vector<char> get_slice(const unsigned int part,
+                              const std::string &name,
+                              const Slice       &slice,
+                              Block             &block) const override
+  {
+    const auto        whole = get(part, name, block);
+    const std::size_t width =
+      whole.size() / std::max<std::size_t>(1, block.n_rows * block.n_columns);
+    if (slice.first_row + slice.n_rows > block.n_rows ||
+        slice.first_column + slice.n_columns > block.n_columns)
+      throw RunFailure("a checkpoint does not fit this case", name + " is too short", "");
+    std::vector<char> result;
+    for (std::size_t row = slice.first_row; row < slice.first_row + slice.n_rows; ++row)
+      {
+        const auto begin = whole.begin() + (row * block.n_columns + slice.first_column) * width;
+        result.insert(result.end(), begin, begin + slice.n_columns * width);
+      }
+    if (slice.n_columns > 0 && slice.n_rows > 0)
+      largest_slice = std::max(largest_slice, result.size());
+    n_sliced += result.size();
+    return result;
+  }
   bool has(const unsigned int part, const std::string &name) const override
   {
     return parts[part].count(name) > 0;
   }
   unsigned int n_parts() const override { return parts.size(); }
 
-  unsigned int                               writer = 0;
+  unsigned int writer = 0;
+  /// What was read in slices, in bytes: the largest one, and all of them.
+  mutable std::size_t                        largest_slice = 0, n_sliced = 0;
   std::vector<std::map<std::string, Stored>> parts;
 };
 } // namespace coracle

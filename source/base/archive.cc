@@ -2,6 +2,7 @@
 #include <coracle/base/archive.h>
 #include <coracle/base/exceptions.h>
 
+#include <cstring>
 #include <unordered_map>
 
 namespace coracle
@@ -29,17 +30,32 @@ Archive::put(const std::string &name, const Block &block, const void *const valu
   store.put(path + name, block, values);
 }
 
-std::vector<char>
-Archive::get(const unsigned int part, const std::string &name, const Block &block) const
+Block
+Archive::look(const unsigned int part, const std::string &name, const Block &block) const
 {
-  Block             found;
-  std::vector<char> bytes = store.get(part, path + name, found);
-  if (found.type != block.type || found.n_columns != block.n_columns ||
+  Block found;
+  store.get_slice(part, path + name, {0, 0, 0, 0}, found);
+  if (found.type != block.type || (block.n_columns > 0 && found.n_columns != block.n_columns) ||
       (block.n_rows > 0 && found.n_rows != block.n_rows))
     throw does_not_fit(path + name,
                        std::to_string(found.n_rows) + " x " + std::to_string(found.n_columns) +
                          " values of kind " + std::to_string(static_cast<int>(found.type)));
-  return bytes;
+  return found;
+}
+
+std::vector<char>
+Archive::get_slice(const unsigned int part, const std::string &name, const Slice &slice) const
+{
+  Block found;
+  return store.get_slice(part, path + name, slice, found);
+}
+
+std::vector<char>
+Archive::get(const unsigned int part, const std::string &name, const Block &block) const
+{
+  look(part, name, block);
+  Block found;
+  return store.get(part, path + name, found);
 }
 
 void
@@ -68,39 +84,6 @@ Archive::load_columns(const unsigned int part, const std::string &name, Columns 
     std::copy_n(bytes.data() + c * n * sizeof(double),
                 n * sizeof(double),
                 reinterpret_cast<char *>(columns[c] + first));
-}
-
-void
-Archive::in_order(const std::string &name, std::vector<int> &values, const unsigned int n_together)
-{
-  if (is_exact())
-    return same(name, values);
-  // Parts are read twice, so that none has to hold the whole list.
-  std::vector<int>         part;
-  std::vector<std::size_t> ends;
-  for (unsigned int p = 0; p < store.n_parts(); ++p)
-    {
-      load(p, name, part);
-      ends.push_back((p > 0 ? ends.back() : 0) + part.size());
-    }
-  if (ends.back() % n_together != 0)
-    throw_not_of_a_piece(name);
-  const std::size_t n     = ends.back() / n_together;
-  const std::size_t begin = n * rank / n_ranks * n_together,
-                    end   = n * (rank + 1) / n_ranks * n_together;
-  values.clear();
-  for (unsigned int p = 0; p < store.n_parts(); ++p)
-    {
-      const std::size_t first = (p > 0 ? ends[p - 1] : 0);
-      if (ends[p] <= begin || first >= end)
-        continue;
-      load(p, name, part);
-      if (part.size() != ends[p] - first)
-        throw_not_of_a_piece(name);
-      values.insert(values.end(),
-                    part.begin() + (std::max(begin, first) - first),
-                    part.begin() + (std::min(end, ends[p]) - first));
-    }
 }
 
 void
@@ -158,29 +141,49 @@ Archive::load_by_key(const std::string                &name,
   for (unsigned int c = summed.first; c < summed.first + summed.n; ++c)
     std::fill_n(columns[c], columns.size(), 0.);
 
-  std::size_t n_found = 0;
+  // Rows lie one behind the other, one for each quantity.
+  const std::size_t n_columns = columns.n_columns(),
+                    at_once = std::max<std::size_t>(1, bytes_at_once / sizeof(double) / n_columns);
+  std::size_t                n_found = 0;
+  std::vector<std::uint64_t> saved_keys(at_once);
   for (unsigned int part = 0; part < store.n_parts(); ++part)
     {
-      std::vector<std::uint64_t> saved_keys;
-      std::uint64_t              n_saved_owned = 0;
-      load(part, "keys", saved_keys);
+      std::uint64_t n_saved_owned = 0;
       load(part, "n_owned", n_saved_owned);
-      Columns saved(columns.n_columns());
-      load_columns(part, "values", saved);
-      if (saved.size() < saved_keys.size())
+      const std::size_t n_keys = look(part, "keys", {Block::Type::natural, 0, 1}).n_rows;
+      if (look(part, "values", {Block::Type::real, n_columns, 0}).n_columns < n_keys)
         throw_not_of_a_piece(name);
-      for (unsigned int from = 0; from < saved_keys.size(); ++from)
+      for (std::size_t begin = 0; begin < n_keys; begin += at_once)
         {
-          const auto found = row_of_key.find(saved_keys[from]);
-          if (found == row_of_key.end())
+          const std::size_t n     = std::min(at_once, n_keys - begin);
+          const auto        bytes = get_slice(part, "keys", {begin, n, 0, 1});
+          std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char *>(saved_keys.data()));
+          // Those of this rank: place in the piece, row here.
+          std::vector<std::pair<std::size_t, unsigned int>> mine;
+          for (std::size_t i = 0; i < n; ++i)
+            if (const auto found = row_of_key.find(saved_keys[i]); found != row_of_key.end())
+              mine.emplace_back(i, found->second);
+          if (mine.empty())
             continue;
-          const unsigned int to = found->second;
-          n_found += from < n_saved_owned;
-          for (unsigned int c = 0; c < columns.n_columns(); ++c)
-            if (!is_summed(c) && from < n_saved_owned)
-              columns[c][to] = saved[c][from];
-            else if (is_summed(c) && to < n_owned)
-              columns[c][to] += saved[c][from];
+          const std::size_t first = mine.front().first, length = mine.back().first + 1 - first;
+          const auto values = get_slice(part, "values", {0, n_columns, begin + first, length});
+          const auto value  = [&](const unsigned int c, const std::size_t i) {
+            double result;
+            std::memcpy(&result,
+                        values.data() + (c * length + i - first) * sizeof(double),
+                        sizeof(double));
+            return result;
+          };
+          for (const auto &[from, to] : mine)
+            {
+              const bool is_owned = begin + from < n_saved_owned;
+              n_found += is_owned;
+              for (unsigned int c = 0; c < n_columns; ++c)
+                if (!is_summed(c) && is_owned)
+                  columns[c][to] = value(c, from);
+                else if (is_summed(c) && to < n_owned)
+                  columns[c][to] += value(c, from);
+            }
         }
     }
   if (n_found != keys.size())

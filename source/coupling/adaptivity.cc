@@ -2,6 +2,9 @@
 #include <coracle/base/mpi.h>
 #include <coracle/coupling/adaptivity.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace coracle
 {
 namespace
@@ -10,6 +13,8 @@ namespace
 constexpr unsigned int steps_between_looks = 5;
 /// Work is shared out anew only where it is this much less even than after the last time.
 constexpr double worse = 1.1;
+/// What makes this part of the unevenness, over an equal one with all others, is shared out anew.
+constexpr double least_share = 0.25;
 
 /// Largest speed of particles and of nodes of structures, on all ranks [m/s].
 template <int dim>
@@ -63,17 +68,20 @@ Adaptivity<dim>::declare(Declaration &grid)
   RefinementCriteria<dim>::declare(adaptivity);
 
   Declaration &balance =
-    grid.section("Load balance", "Sharing out of cells and their particles among the ranks.");
+    grid.section("Load balance",
+                 "Sharing out of cells with their particles, and of elements of structures, "
+                 "among the ranks.");
   balance.quantity(
     "Largest imbalance",
     "1.2",
     "1",
     "",
-    "Work of the busiest rank over the mean, beyond which cells are shared out anew; 0: never.",
+    "Work of the busiest rank over the mean, beyond which it is shared out anew; 0: never.",
     0.);
   balance.integer("Interval in steps", 100, "Steps between looks at the balance.", 1);
   balance.quantity(
     "Work of a contact", "20", "1", "", "Of a contact over that of a particle, in a step.", 0.);
+  StructureWork<dim>::declare(balance);
 }
 
 template <int dim>
@@ -82,6 +90,7 @@ Adaptivity<dim>::Adaptivity(const Parameters           &root,
                             const contact::Method       method)
   : criteria(root, structure, method == contact::Method::surface)
   , refinement(root.section("Grid").section("Adaptivity"))
+  , structure_work(root)
 {
   const Parameters section = root.section("Grid").section("Adaptivity"),
                    load    = root.section("Grid").section("Load balance");
@@ -109,15 +118,48 @@ Adaptivity<dim>::work(const MaterialPointSystem<dim> &points,
 }
 
 template <int dim>
+std::vector<double>
+Adaptivity<dim>::work_of_parts(const MaterialPointSystem<dim>            &points,
+                               const ContactCoupling<dim>                &contacts,
+                               const typename StructureWork<dim>::ByBody &elements) const
+{
+  std::vector<double> result(1, points.octree.n_owned_leaves() + points.n_particles());
+  for (unsigned int leaf = 0; leaf < points.octree.n_owned_leaves(); ++leaf)
+    result[0] += contact_weight * contacts.leaf_contacts().number(leaf);
+  for (const auto &of_body : elements)
+    result.push_back(std::accumulate(of_body.begin(), of_body.end(), 0.));
+  return result;
+}
+
+template <int dim>
 double
 Adaptivity<dim>::imbalance(const MaterialPointSystem<dim> &points,
+                           const StructureSystem<dim>     &structure,
                            const ContactCoupling<dim>     &contacts) const
 {
   const MPI_Comm comm = points.octree.triangulation.get_communicator();
-  double         mine = points.octree.n_owned_leaves() + points.n_particles();
-  for (unsigned int leaf = 0; leaf < points.octree.n_owned_leaves(); ++leaf)
-    mine += contact_weight * contacts.leaf_contacts().number(leaf);
+  const auto     parts =
+    work_of_parts(points, contacts, structure_work.of_elements(structure, contacts));
+  const double mine = std::accumulate(parts.begin(), parts.end(), 0.);
   return mpi::max(mine, comm) * mpi::n_ranks(comm) / std::max(mpi::sum(mine, comm), 1.);
+}
+
+template <int dim>
+std::vector<bool>
+Adaptivity<dim>::uneven_parts(const std::vector<double> &work, MPI_Comm comm)
+{
+  std::vector<double> largest(work.size()), sum(work.size());
+  dealii::Utilities::MPI::max(work, comm, largest);
+  dealii::Utilities::MPI::sum(work, comm, sum);
+  double all = 0;
+  for (unsigned int part = 0; part < work.size(); ++part)
+    all += largest[part] - sum[part] / mpi::n_ranks(comm);
+  // There is always one.
+  std::vector<bool> result;
+  for (unsigned int part = 0; part < work.size(); ++part)
+    result.push_back(largest[part] - sum[part] / mpi::n_ranks(comm) >
+                     least_share * all / work.size());
+  return result;
 }
 
 template <int dim>
@@ -140,7 +182,7 @@ Adaptivity<dim>::initialise(MaterialPointSystem<dim> &points,
     for (unsigned int round = 0; round <= criteria.highest_level(); ++round)
       if (!adapt(points, structure, contacts, 0.))
         break;
-  balance(points, contacts);
+  balance(points, structure, contacts);
 }
 
 template <int dim>
@@ -177,7 +219,7 @@ Adaptivity<dim>::update(MaterialPointSystem<dim> &points,
   // Sharing out forgets what contact did in leaves, which criteria may ask for.
   const bool may_forget = !reproducible || criteria.empty() || state.steps == 0;
   if (++state.steps_since_balance >= balance_interval && may_forget)
-    balance(points, contacts);
+    balance(points, structure, contacts);
 }
 
 template <int dim>
@@ -209,23 +251,45 @@ Adaptivity<dim>::adapt(MaterialPointSystem<dim> &points,
   if (new_particles)
     points.redistribute_particles();
   if (new_leaves || new_particles)
-    balance(points, contacts);
+    balance(points, structure, contacts);
   return new_leaves || new_particles;
 }
 
 template <int dim>
-void
-Adaptivity<dim>::balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> &contacts)
+bool
+Adaptivity<dim>::balance(MaterialPointSystem<dim> &points,
+                         StructureSystem<dim>     &structure,
+                         ContactCoupling<dim>     &contacts)
 {
+  const MPI_Comm comm       = points.octree.triangulation.get_communicator();
   state.steps_since_balance = 0;
-  if (largest_imbalance == 0 || mpi::n_ranks(points.octree.triangulation.get_communicator()) == 1 ||
-      imbalance(points, contacts) <= std::max(largest_imbalance, worse * state.reached_imbalance))
-    return;
-  points.sort();
-  points.octree.repartition(work(points, contacts));
-  points.octree_changed();
-  contacts.octree_changed(points);
-  state.reached_imbalance = imbalance(points, contacts);
+  if (largest_imbalance == 0 || mpi::n_ranks(comm) == 1)
+    return false;
+  const bool is_uneven = imbalance(points, structure, contacts) >
+                         std::max(largest_imbalance, worse * state.reached_imbalance);
+  if (is_uneven)
+    {
+      const auto        elements = structure_work.of_elements(structure, contacts);
+      std::vector<bool> parts    = uneven_parts(work_of_parts(points, contacts, elements), comm);
+      if (parts[0])
+        {
+          points.sort();
+          points.octree.repartition(work(points, contacts));
+          points.octree_changed();
+          contacts.octree_changed(points);
+        }
+      parts.erase(parts.begin());
+      if (structure_work.may_share_out() &&
+          std::find(parts.begin(), parts.end(), true) != parts.end())
+        {
+          structure.share_out(parts, elements);
+          contacts.structure_shared_out(structure);
+          points.structure_changed();
+        }
+      state.reached_imbalance = imbalance(points, structure, contacts);
+    }
+  contacts.fade_structure_points();
+  return is_uneven;
 }
 
 template class Adaptivity<2>;

@@ -107,6 +107,7 @@ ContactCoupling<dim>::find(MaterialPointSystem<dim> &points,
   const auto &surface = structure.publish_surface();
   surface_nodes.fill(surface, sets.begin() + points.bodies.size());
   system.find(surface, sets, dt);
+  surface_nodes.count(system.contacts(), points.bodies.size());
   note_touched(points);
 }
 
@@ -157,6 +158,15 @@ ContactCoupling<dim>::structure_changed(StructureSystem<dim> &structure)
 {
   surface_nodes.structure_changed(structure);
   system.surface_changed();
+}
+
+template <int dim>
+void
+ContactCoupling<dim>::structure_shared_out(StructureSystem<dim> &structure)
+{
+  surface_nodes.shared_out(structure);
+  // Keys are the same, so that impulses to start from are found where their points have stayed.
+  system.points_renumbered();
 }
 
 template <int dim>

@@ -146,6 +146,8 @@ Coupling<dim>::Coupling(const Parameters &root, MPI_Comm comm, Archive *saved_oc
       adaptivity.initialise(points, structure, contacts);
       // What starts on a surface touches it in the first step already.
       contacts.find(points, structure, 0);
+      if (adaptivity.balance(points, structure, contacts))
+        contacts.find(points, structure, 0);
     }
 }
 
@@ -192,7 +194,7 @@ Coupling<dim>::share_out()
   std::vector<StressSweep> sweeps;
   for (const auto &body : points.bodies)
     sweeps.push_back(body.sweep);
-  adaptivity.balance(points, contacts);
+  adaptivity.balance(points, structure, contacts);
   auto sweep = sweeps.begin();
   for (auto &body : points.bodies)
     body.sweep = *sweep++;

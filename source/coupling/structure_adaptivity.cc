@@ -236,6 +236,9 @@ template <int dim>
 StructureAdaptivity<dim>::StructureAdaptivity(const Parameters               &root,
                                               const MaterialPointSystem<dim> &points,
                                               StructureSystem<dim>           &structure)
+  : work(root)
+  , by_work(work.may_share_out() &&
+            root.section("Grid").section("Load balance").quantity("Largest imbalance") > 0)
 {
   bool any = false;
   for (unsigned int b = 0; b < structure.n_bodies(); ++b)
@@ -365,7 +368,9 @@ StructureAdaptivity<dim>::adapt(MaterialPointSystem<dim> &points,
         all[b] = wanted(plans[b], b, points, structure);
         any    = true;
       }
-  if (!any || !structure.refine(all))
+  if (!any || !structure.refine(all,
+                                by_work ? work.of_elements(structure, contacts)
+                                        : typename StructureWork<dim>::ByBody()))
     return false;
   contacts.structure_changed(structure);
   points.structure_changed();

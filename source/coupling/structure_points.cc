@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <coracle/base/mpi.h>
+#include <coracle/base/key_directory.h>
 #include <coracle/contact/initial_overlaps.h>
 #include <coracle/contact/messages.h>
 #include <coracle/coupling/structure_points.h>
@@ -114,8 +114,64 @@ StructurePoints<dim>::structure_changed(StructureSystem<dim> &structure)
   if (parts.empty())
     return;
   parts.clear();
+  n_steps             = 0;
   const auto &surface = structure.publish_surface();
   make_parts(structure, surface, assign_nodes(surface, comm));
+}
+
+template <int dim>
+void
+StructurePoints<dim>::shared_out(StructureSystem<dim> &structure)
+{
+  if (parts.empty())
+    return;
+  // Sides, then how many contacts were counted.
+  const unsigned int n_sheets = structure.n_sheets();
+  KeyDirectory       directory(n_sheets + 1, comm);
+  for (const Part &part : parts)
+    {
+      Columns rows(n_sheets + 1);
+      rows.resize(part.keys.size());
+      for (unsigned int s = 0; s < n_sheets; ++s)
+        std::copy(part.side[s].begin(), part.side[s].end(), rows[s]);
+      std::copy(part.n_contacts.begin(), part.n_contacts.end(), rows[n_sheets]);
+      directory.add(part.keys, rows);
+    }
+  parts.clear();
+  const auto &surface = structure.publish_surface();
+  make_parts(structure, surface, assign_nodes(surface, comm));
+  for (Part &part : parts)
+    {
+      Columns rows(n_sheets + 1);
+      rows.resize(part.keys.size());
+      directory.find(part.keys, rows);
+      for (unsigned int s = 0; s < n_sheets; ++s)
+        std::copy_n(rows[s], rows.size(), part.side[s].begin());
+      std::copy_n(rows[n_sheets], rows.size(), part.n_contacts.begin());
+    }
+}
+
+template <int dim>
+void
+StructurePoints<dim>::count(const std::vector<contact::Contact<dim>> &contacts,
+                            const unsigned int                        first_set)
+{
+  if (parts.empty())
+    return;
+  n_steps += 1;
+  for (const auto &contact : contacts)
+    if (contact.set >= first_set)
+      parts[contact.set - first_set].n_contacts[contact.point] += 1;
+}
+
+template <int dim>
+void
+StructurePoints<dim>::fade()
+{
+  n_steps *= 0.5;
+  for (Part &part : parts)
+    for (double &number : part.n_contacts)
+      number *= 0.5;
 }
 
 template <int dim>
@@ -130,6 +186,7 @@ StructurePoints<dim>::make_parts(const StructureSystem<dim>  &structure,
       Part        &part      = parts.back();
       const double thickness = surface.bodies[structure.first_surface(b)].thickness;
       part.body              = structure.first_surface(b);
+      part.first_node        = structure.begin_nodes(b);
       part.radius            = thickness > 0 ? 0.5 * thickness : smallest_radius * smallest_edge;
       for (unsigned int i = structure.begin_nodes(b); i < structure.begin_nodes(b + 1); ++i)
         if (is_mine[i] && !surface.nodes[i].hangs())
@@ -142,6 +199,7 @@ StructurePoints<dim>::make_parts(const StructureSystem<dim>  &structure,
           part.position[d].resize(part.nodes.size());
           part.velocity[d].resize(part.nodes.size());
         }
+      part.n_contacts.resize(part.nodes.size());
       part.side.assign(structure.n_sheets(), std::vector<double>(part.nodes.size()));
     }
 }
@@ -249,6 +307,19 @@ StructurePoints<dim>::serialize(Archive &archive)
         for (unsigned int s = 0; s < part.side.size(); ++s)
           std::copy_n(sides[s], sides.size(), part.side[s].begin());
       }
+  // Earlier checkpoints have not counted.
+  if (parts.empty() || !archive.has("steps_of_counting"))
+    return;
+  archive.same("steps_of_counting", n_steps);
+  for (auto &part : parts)
+    {
+      Columns numbers(1);
+      numbers.resize(part.keys.size());
+      std::copy(part.n_contacts.begin(), part.n_contacts.end(), numbers[0]);
+      archive.keyed(
+        "contacts of nodes " + std::to_string(part.body), part.keys, part.keys.size(), numbers, {});
+      std::copy_n(numbers[0], numbers.size(), part.n_contacts.begin());
+    }
 }
 
 template class StructurePoints<2>;

@@ -300,17 +300,34 @@ StructureSystem<dim>::has_failed() const
 
 template <int dim>
 bool
-StructureSystem<dim>::refine(const std::vector<std::vector<bool>> &wanted)
+StructureSystem<dim>::refine(const std::vector<std::vector<bool>> &wanted, const Work &work)
 {
   bool changed = false;
   for_each_surface([&](auto &body, const unsigned int index) {
-    const bool is_meant = mpi::any(!wanted[index].empty(), comm);
-    if (is_meant && body.refine(wanted[index]))
-      changed = true;
+    if (!mpi::any(std::find(wanted[index].begin(), wanted[index].end(), true) !=
+                    wanted[index].end(),
+                  comm))
+      return;
+    if (!work.empty())
+      body.set_element_weights(work[index]);
+    changed = body.refine(wanted[index]) || changed;
   });
   if (changed)
     make_surface();
   return changed;
+}
+
+template <int dim>
+void
+StructureSystem<dim>::share_out(const std::vector<bool> &bodies, const Work &work)
+{
+  for_each_surface([&](auto &body, const unsigned int index) {
+    if (!bodies[index])
+      return;
+    body.set_element_weights(work[index]);
+    body.share_out();
+  });
+  make_surface();
 }
 
 template <int dim>

@@ -132,8 +132,9 @@ CouplingOutput<dim>::make_report(Coupling<dim> &coupling)
   for_each_structure(coupling.structure, [&report](const auto &body) {
     report.elements += body.mesh().n_global_elements();
   });
-  report.imbalance = coupling.adaptivity.imbalance(coupling.points, coupling.contacts);
-  report.energies  = energies(coupling);
+  report.imbalance =
+    coupling.adaptivity.imbalance(coupling.points, coupling.structure, coupling.contacts);
+  report.energies = energies(coupling);
   if (first_report)
     balance.start(report.energies);
   first_report                = false;

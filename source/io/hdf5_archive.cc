@@ -51,6 +51,74 @@ not_readable(const std::string &file, const std::string &name)
                     file + ": '" + name + "' is not in it, or cannot be read",
                     "go on with the program and the parameter file that wrote it");
 }
+/// A dataset while it is read.
+class Dataset
+{
+public:
+  /// @param block what it holds, nothing if it is none of ours or the file has not all of it
+  Dataset(const hid_t file, const std::string &name, Block &block)
+    : set(H5Dopen2(file, name.c_str(), H5P_DEFAULT))
+    , space(set < 0 ? -1 : H5Dget_space(set))
+    , type(set < 0 ? -1 : H5Dget_type(set))
+    , is_good(set >= 0)
+  {
+    block                = Block();
+    hsize_t extent[2]    = {0, 0};
+    hsize_t size_of_file = 0;
+    is_good = is_good && H5Sget_simple_extent_ndims(space) == 2 && find_type(type, block.type) &&
+              H5Fget_filesize(file, &size_of_file) >= 0;
+    if (!is_good)
+      return;
+    H5Sget_simple_extent_dims(space, extent, nullptr);
+    width           = H5Tget_size(type);
+    block.n_rows    = extent[0];
+    block.n_columns = extent[1];
+    // All of it must be in the file; the first test keeps the product from overflowing.
+    is_good = extent[0] <= size_of_file && extent[1] <= size_of_file &&
+              (extent[1] == 0 || extent[0] <= size_of_file / width / extent[1]);
+    const std::size_t size = is_good ? extent[0] * extent[1] * width : 0;
+    is_good                = is_good && (size == 0 || H5Dget_storage_size(set) == size);
+    n_rows                 = extent[0];
+    n_columns              = extent[1];
+  }
+  ~Dataset()
+  {
+    if (type >= 0)
+      H5Tclose(type);
+    if (space >= 0)
+      H5Sclose(space);
+    if (set >= 0)
+      H5Dclose(set);
+  }
+  Dataset(const Dataset &) = delete;
+
+  std::vector<char> read(const Slice &slice, const std::string &file, const std::string &name) const
+  {
+    const bool is_inside = slice.first_row <= n_rows && slice.n_rows <= n_rows - slice.first_row &&
+                           slice.first_column <= n_columns &&
+                           slice.n_columns <= n_columns - slice.first_column;
+    if (!is_good || !is_inside)
+      throw not_readable(file, name);
+    std::vector<char> bytes(slice.n_rows * slice.n_columns * width);
+    if (bytes.empty())
+      return bytes;
+    const hsize_t first[] = {slice.first_row, slice.first_column},
+                  count[] = {slice.n_rows, slice.n_columns};
+    const hid_t memory    = H5Screate_simple(2, count, nullptr);
+    const bool  was_read =
+      H5Sselect_hyperslab(space, H5S_SELECT_SET, first, nullptr, count, nullptr) >= 0 &&
+      H5Dread(set, type, memory, space, H5P_DEFAULT, bytes.data()) >= 0;
+    H5Sclose(memory);
+    if (!was_read)
+      throw not_readable(file, name);
+    return bytes;
+  }
+
+private:
+  const hid_t set, space, type;
+  bool        is_good;
+  std::size_t n_rows = 0, n_columns = 0, width = 1;
+};
 } // namespace
 
 Hdf5Archive::Hdf5Archive() : names(1), files(1, -1)
@@ -124,31 +192,18 @@ Hdf5Archive::has(const unsigned int part, const std::string &name) const
 std::vector<char>
 Hdf5Archive::get(const unsigned int part, const std::string &name, Block &block) const
 {
-  const hid_t file = open(part), set = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
-  if (set < 0)
-    throw not_readable(names[part], name);
-  const hid_t space = H5Dget_space(set), type = H5Dget_type(set);
-  hsize_t     extent[2] = {0, 0}, size_of_file = 0;
-  bool        good = H5Sget_simple_extent_ndims(space) == 2 && find_type(type, block.type) &&
-              H5Fget_filesize(file, &size_of_file) >= 0;
-  if (good)
-    H5Sget_simple_extent_dims(space, extent, nullptr);
-  block.n_rows    = extent[0];
-  block.n_columns = extent[1];
-  // All of it must be in the file; the first test keeps the product from overflowing.
-  const std::size_t width = (good ? H5Tget_size(type) : 1);
-  good                    = good && extent[0] <= size_of_file && extent[1] <= size_of_file &&
-         (extent[1] == 0 || extent[0] <= size_of_file / width / extent[1]);
-  std::vector<char> bytes(good ? extent[0] * extent[1] * width : 0);
-  good = good &&
-         (bytes.empty() || (H5Dget_storage_size(set) == bytes.size() &&
-                            H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0));
-  H5Tclose(type);
-  H5Sclose(space);
-  H5Dclose(set);
-  if (!good)
-    throw not_readable(names[part], name);
-  return bytes;
+  const Dataset set(open(part), name, block);
+  return set.read({0, block.n_rows, 0, block.n_columns}, names[part], name);
+}
+
+std::vector<char>
+Hdf5Archive::get_slice(const unsigned int part,
+                       const std::string &name,
+                       const Slice       &slice,
+                       Block             &block) const
+{
+  const Dataset set(open(part), name, block);
+  return set.read(slice, names[part], name);
 }
 
 std::vector<char>

@@ -198,6 +198,7 @@ StructureMesh<dim>::number_elements()
       levels.push_back(cell->level());
       add_facets(cell);
     }
+  weight.assign(elements.size(), 1.);
 
   this->exchange.update_ghosts(positions, 0, dim);
   this->nodes.resize(this->n_nodes());

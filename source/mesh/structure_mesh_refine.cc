@@ -3,12 +3,22 @@
 #include <coracle/mesh/structure_mesh.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
-#include <unordered_set>
 
 namespace coracle
 {
+namespace
+{
+/// p4est knows whole numbers; nothing is added to these.
+unsigned int
+whole_weight(const double weight)
+{
+  return static_cast<unsigned int>(std::clamp(std::round(1000. * weight), 1., 1e9));
+}
+} // namespace
+
 /**
  * Takes rows of nodes and elements along when the mesh changes. Each element packs
  * the rows of its corners and its own one; they travel to where the element, or what
@@ -22,6 +32,11 @@ public:
 
   /// Rows of an element as it is before the change.
   std::vector<char> pack(const unsigned int active_cell) const;
+  /// Of an element as it is before the change, and so of each of its parts.
+  double weight(const unsigned int active_cell) const
+  {
+    return mesh.weight[element_of_cell[active_cell]];
+  }
   /// After nodes and elements have new numbers.
   void begin_unpacking();
   using Cell  = typename dealii::Triangulation<dim>::cell_iterator;
@@ -42,8 +57,13 @@ private:
   };
 
   std::size_t row_size() const { return dim + state.nodes.n_columns(); }
-  std::size_t packed_size() const { return n_corners * row_size() + state.elements.n_columns(); }
-  void        offer(const unsigned int node, const Source source, const double *row);
+  /// Rows of the corners, the element's row, its weight.
+  std::size_t packed_size() const { return place_of_weight() + 1; }
+  std::size_t place_of_weight() const
+  {
+    return n_corners * row_size() + state.elements.n_columns();
+  }
+  void offer(const unsigned int node, const Source source, const double *row);
   void unpack_child(const unsigned int element, const unsigned int child, const double *parent);
   /// Mean of those corners of an element that the point `place` (0, 1 or 2 along each axis) is
   /// between; the same bits from any element that has them.
@@ -87,6 +107,7 @@ StructureMesh<dim>::Carrier::pack(const unsigned int active_cell) const
     }
   if (state.elements.n_columns() > 0)
     state.elements.get_row(element, value);
+  values[place_of_weight()] = mesh.weight[element];
   std::vector<char> bytes(values.size() * sizeof(double));
   std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
@@ -133,6 +154,7 @@ StructureMesh<dim>::Carrier::unpack(const Cell &cell, const bool was_refined, co
   const unsigned int element = element_of_cell[cell->active_cell_index()];
   for (unsigned int v = 0; v < n_corners; ++v)
     offer(mesh.elements[element][v], kept, &values[v * row_size()]);
+  mesh.weight[element] = values[place_of_weight()];
   if (new_elements.n_columns() > 0)
     new_elements.set_row(element, &values[n_corners * row_size()]);
 }
@@ -157,6 +179,7 @@ StructureMesh<dim>::Carrier::unpack_child(const unsigned int element,
       offer(mesh.elements[element][v], is_corner ? kept : mean, row.data());
     }
   state.is_child[element] = true;
+  mesh.weight[element]    = parent[place_of_weight()];
   if (new_elements.n_columns() == 0)
     return;
   std::vector<double> own(new_elements.n_columns());
@@ -254,12 +277,10 @@ template <int dim>
 bool
 StructureMesh<dim>::refine(const std::vector<bool> &wanted, CarriedState<dim> &state)
 {
-  using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
   AssertDimension(wanted.size(), n_elements());
   if (!mpi::any(std::find(wanted.begin(), wanted.end(), true) != wanted.end(),
                 this->communicator()))
     return false;
-  Carrier carrier(*this, state);
   for (const auto &cell : triangulation.active_cell_iterators())
     cell->clear_refine_flag();
   std::vector<bool> flags(triangulation.n_active_cells());
@@ -271,13 +292,45 @@ StructureMesh<dim>::refine(const std::vector<bool> &wanted, CarriedState<dim> &s
         Assert(cell->level() < static_cast<int>(deepest_level), dealii::ExcInternalError());
         cell->set_refine_flag();
       }
+  carry(state, [this] { triangulation.execute_coarsening_and_refinement(); });
+  return true;
+}
 
+template <int dim>
+void
+StructureMesh<dim>::set_weights(const std::vector<double> &by_element)
+{
+  AssertDimension(by_element.size(), n_elements());
+  weight   = by_element;
+  weighted = true;
+}
+
+template <int dim>
+void
+StructureMesh<dim>::share_out(CarriedState<dim> &state)
+{
+  carry(state, [this] { triangulation.repartition(); });
+}
+
+template <int dim>
+void
+StructureMesh<dim>::carry(CarriedState<dim> &state, const std::function<void()> &change)
+{
+  using Triangulation = dealii::parallel::distributed::Triangulation<dim>;
+  Carrier                     carrier(*this, state);
+  boost::signals2::connection connection;
+  if (weighted)
+    connection = triangulation.signals.weight.connect(
+      [&carrier](const auto &cell, const typename Triangulation::CellStatus) {
+        return whole_weight(carrier.weight(cell->active_cell_index()));
+      });
   const unsigned int handle = triangulation.register_data_attach(
     [&carrier](const auto &cell, const typename Triangulation::CellStatus) {
       return carrier.pack(cell->active_cell_index());
     },
     false);
-  triangulation.execute_coarsening_and_refinement();
+  change();
+  connection.disconnect();
   number_nodes();
   carrier.begin_unpacking();
   triangulation.notify_ready_to_unpack(handle,
@@ -291,7 +344,6 @@ StructureMesh<dim>::refine(const std::vector<bool> &wanted, CarriedState<dim> &s
   carrier.finish();
   move_vertices();
   ++changes;
-  return true;
 }
 
 template <int dim>
@@ -310,17 +362,16 @@ StructureMesh<dim>::move_vertices()
 
 template <int dim>
 void
-StructureMesh<dim>::refine_to(const std::vector<std::uint64_t> &keys)
+StructureMesh<dim>::refine_to(const AreThere &are_there)
 {
-  const std::unordered_set<std::uint64_t> there(keys.begin(), keys.end());
-  Columns                                 no_node_columns, no_element_columns;
-  CarriedState<dim>                       nothing{no_node_columns, no_element_columns, {}};
-  std::vector<bool>                       wanted;
+  Columns           no_node_columns, no_element_columns;
+  CarriedState<dim> nothing{no_node_columns, no_element_columns, {}};
+  std::vector<bool> wanted;
   do
     {
-      wanted.clear();
+      wanted = are_there(element_keys);
       for (unsigned int e = 0; e < n_elements(); ++e)
-        wanted.push_back(there.count(element_keys[e]) == 0 && level(e) < deepest_level);
+        wanted[e] = !wanted[e] && level(e) < deepest_level;
   } while (refine(wanted, nothing));
 }
 

@@ -328,6 +328,20 @@ RigidBody<dim>::refine(const std::vector<bool> &wanted)
 }
 
 template <int dim>
+void
+RigidBody<dim>::share_out()
+{
+  auto *const mesh = dynamic_cast<StructureMesh<dim> *>(this->body_mesh.get());
+  if (mesh == nullptr)
+    return;
+  mesh->exchange.update_ghosts(this->node_columns, Node::contact_force, dim);
+  Columns           no_elements;
+  CarriedState<dim> state{this->node_columns, no_elements, {}};
+  mesh->share_out(state);
+  this->find_surface_nodes();
+}
+
+template <int dim>
 unsigned int
 RigidBody<dim>::n_mesh_changes() const
 {

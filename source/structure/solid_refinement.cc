@@ -82,23 +82,48 @@ SolidBody<dim>::refine(const std::vector<bool> &wanted)
 
 template <int dim>
 void
-SolidBody<dim>::follow_mesh(const CarriedState<dim> &state)
+SolidBody<dim>::share_out()
 {
   Columns &nodes = this->node_columns;
+  // Sums that ranks have parts of, whole at the owners; elements hand on what they know of corners.
+  condense(Node::internal, 2 * dim);
+  mesh().exchange.sum_to_owners(nodes, Node::internal, 2 * dim);
+  for (const unsigned int column : {Node::internal, Node::external, Node::contact_force})
+    mesh().exchange.update_ghosts(nodes, column, dim);
+  Columns           rows = elements.rows();
+  CarriedState<dim> state{nodes, rows, {}};
+  changing_mesh().share_out(state);
+  for (unsigned int c = Node::internal; c < Node::internal + 2 * dim; ++c)
+    std::fill(nodes[c] + mesh().n_owned_nodes(), nodes[c] + mesh().n_nodes(), 0.);
+  take_mesh(state);
+}
+
+template <int dim>
+void
+SolidBody<dim>::take_mesh(const CarriedState<dim> &state)
+{
   elements.reinit(mesh(), state.elements);
   this->find_surface_nodes();
   boundary_conditions = BoundaryConditions<dim>(section, mesh());
   loads               = Loads<dim>(section, mesh());
+  if (is_met_in_volume)
+    contact_through_volume();
+  else
+    find_contact_nodes();
+}
+
+template <int dim>
+void
+SolidBody<dim>::follow_mesh(const CarriedState<dim> &state)
+{
+  Columns &nodes = this->node_columns;
+  take_mesh(state);
   // Forces are of nodes that were there, not of places.
   for (int d = 0; d < dim; ++d)
     for (unsigned int n = 0; n < nodes.size(); ++n)
       if (state.is_new_node[n])
         nodes[Node::contact_force + d][n] = 0;
   set_mass();
-  if (is_met_in_volume)
-    contact_through_volume();
-  else
-    find_contact_nodes();
 }
 
 template <int dim>
@@ -272,6 +297,8 @@ SolidBody<dim>::stress_jumps() const
   template typename SolidBody<dim>::Motion SolidBody<dim>::motion() const;                         \
   template bool                            SolidBody<dim>::refine(const std::vector<bool> &);      \
   template void                            SolidBody<dim>::make_room();                            \
+  template void                            SolidBody<dim>::share_out();                            \
+  template void                            SolidBody<dim>::take_mesh(const CarriedState<dim> &);   \
   template std::vector<double>             SolidBody<dim>::stress_jumps() const;                   \
   template void                            SolidBody<dim>::follow_mesh(const CarriedState<dim> &); \
   template void SolidBody<dim>::restore_motion(const Motion &, const CarriedState<dim> &);         \

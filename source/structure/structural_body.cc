@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <deal.II/base/mpi.templates.h>
-
+#include <coracle/base/key_directory.h>
 #include <coracle/structure/structural_body.h>
 
 #include <algorithm>
@@ -73,16 +72,38 @@ template <int dim>
 bool
 StructuralBody<dim>::serialize_mesh(Archive &archive, StructureMesh<dim> &mesh)
 {
-  std::vector<std::uint64_t> keys = mesh.element_keys;
-  archive.all("element_keys", keys);
+  std::vector<std::uint64_t> keys     = mesh.element_keys;
+  std::vector<double>        weights  = mesh.weights();
+  bool                       weighted = mesh.is_weighted();
+  archive.in_order("element_keys", keys);
+  // Earlier checkpoints know no weights.
+  if (archive.has("element_weights"))
+    {
+      archive.same("weighted", weighted);
+      archive.in_order("element_weights", weights);
+    }
   if (!archive.loads())
     return false;
-  // As many ranks as have saved get each its own.
-  std::vector<std::uint64_t> all_keys;
-  for (const auto &of_rank : dealii::Utilities::MPI::all_gather(mesh.communicator(), keys))
-    all_keys.insert(all_keys.end(), of_rank.begin(), of_rank.end());
+  weights.resize(keys.size(), 1.);
+
+  Columns saved(1);
+  saved.resize(keys.size());
+  std::copy(weights.begin(), weights.end(), saved[0]);
+  KeyDirectory elements(1, mesh.communicator());
+  elements.add(keys, saved);
   const unsigned int before = mesh.n_changes();
-  mesh.refine_to(all_keys);
+  Columns            found(1);
+  mesh.refine_to([&](const std::vector<std::uint64_t> &of_mesh) {
+    found.resize(of_mesh.size());
+    return elements.find(of_mesh, found);
+  });
+  if (weighted)
+    {
+      mesh.set_weights(std::vector<double>(found[0], found[0] + found.size()));
+      Columns           no_node_columns, no_element_columns;
+      CarriedState<dim> nothing{no_node_columns, no_element_columns, {}};
+      mesh.share_out(nothing);
+    }
   return mesh.n_changes() > before;
 }
 

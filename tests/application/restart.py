@@ -101,12 +101,19 @@ for n in (1, 2):
     # The octree changes on the way, particles split and merge, ranks are balanced.
     same_ranks("adaptive_study/water_entry.prm", {"End time": "6 ms"}, n, 250)
 
+# Elements go to other ranks again and again.
+OFTEN = {"Grid/Load balance/Interval in steps": 20, "Grid/Load balance/Largest imbalance": 1.001,
+         "Grid/Load balance/Work of a contact": 200}
+same_ranks("colliding_bars/colliding_bars.prm", {**OFTEN, "Output/Structures": "false"}, 3, 400)
+
 # Not too many particles: their masses are added one after the other.
 COARSE = {"Grid/Cell size": "40 mm", "Bodies/water/Particle spacing": "10 mm", "End time": "4.5 ms"}
 for ranks in ((1, 2), (2, 1), (3, 2), (3, 4)):
     other_ranks("water_entry/water_entry.prm", COARSE, *ranks, 90)
 for ranks in ((1, 2), (2, 3)):
     other_ranks("colliding_bars/colliding_bars.prm", {"End time": "0.16 ms"}, *ranks, 200)
+for ranks in ((1, 4), (3, 1)):
+    other_ranks("colliding_bars/colliding_bars.prm", {**OFTEN, "End time": "0.16 ms"}, *ranks, 200)
 other_ranks("folded_plate/folded_plate.prm", {**FRICTION, "End time": "3.6 ms"}, 2, 1, 200)
 # To the tolerance of the pressure's solver.
 other_ranks("column_collapse_meshless/column_collapse_meshless.prm", {"End time": "0.1"}, 1, 2, 100, 1e-9)

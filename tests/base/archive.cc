@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // State that three ranks have saved comes back to three bit by bit, and to two as the same common
-// values, sums, extremes, rows and keyed rows.
+// values, sums, extremes, rows and keyed rows, of which none reads many more than its own at once.
 #include <coracle/base/archive.h>
 #include <coracle/base/exceptions.h>
 
@@ -169,6 +169,46 @@ main()
     {
       deallog << failure.title << std::endl;
     }
+
+  // Two ranks saved 300,000 rows each; of four each wants a stretch of them.
+  MemoryStore        large(2);
+  const unsigned int n_rows = 300000, n_wanted = 2 * n_rows / 4;
+  for (unsigned int rank = 0; rank < 2; ++rank)
+    {
+      large.writer = rank;
+      std::vector<std::uint64_t> keys, list;
+      Columns                    rows(4);
+      rows.resize(n_rows);
+      for (unsigned int i = 0; i < n_rows; ++i)
+        {
+          keys.push_back(rank * n_rows + i);
+          rows[2][i] = 0.5 * keys.back();
+        }
+      list = keys;
+      Archive archive(large, Archive::Mode::save, rank, 2);
+      archive.keyed("rows", keys, n_rows, rows, {});
+      archive.in_order("list", list);
+    }
+  bool right = true;
+  for (unsigned int rank = 0; rank < 4; ++rank)
+    {
+      large.n_sliced = 0;
+      std::vector<std::uint64_t> keys, list;
+      for (unsigned int i = 0; i < n_wanted; ++i)
+        keys.push_back(rank * n_wanted + i);
+      Columns rows(4);
+      rows.resize(n_wanted);
+      Archive archive(large, Archive::Mode::load, rank, 4);
+      archive.keyed("rows", keys, n_wanted, rows, {});
+      archive.in_order("list", list);
+      for (unsigned int i = 0; i < n_wanted; ++i)
+        right = right && rows[2][i] == 0.5 * keys[i];
+      right = right && list == keys;
+      // All keys, own rows and own part of the list.
+      right = right && large.n_sliced < 8 * (2 * n_rows + n_wanted) + 1.01 * 32 * n_wanted;
+    }
+  deallog << "long ones in pieces: " << right << ", none of more than 4 MiB: "
+          << (large.largest_slice <= (1 << 22) && large.largest_slice > (1 << 21)) << std::endl;
 
   // What does not hold together is refused, not read past its end.
   const auto refused = [&memory](const std::string &name, const std::size_t size) {

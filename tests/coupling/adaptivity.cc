@@ -157,7 +157,9 @@ test_drop()
           << mpi::sum(coupling->points.octree.n_owned_leaves(), comm) << std::endl;
   // Few particles in whole families of cells: it can't be much better.
   deallog << "drop: work is shared "
-          << (coupling->adaptivity.imbalance(coupling->points, coupling->contacts) < 1.5)
+          << (coupling->adaptivity.imbalance(coupling->points,
+                                             coupling->structure,
+                                             coupling->contacts) < 1.5)
           << std::endl;
 }
 

@@ -32,6 +32,12 @@ struct Block
   std::size_t n_columns = 1;
 };
 
+/// Some rows and columns of a block.
+struct Slice
+{
+  std::size_t first_row, n_rows, first_column, n_columns;
+};
+
 /// Where the blocks of an archive go to and come from: a file, or memory.
 class ArchiveStore
 {
@@ -44,6 +50,13 @@ public:
   /// Of any of the ranks that saved; throws RunFailure if there is no such block.
   virtual std::vector<char>
   get(const unsigned int part, const std::string &name, Block &block) const = 0;
+
+  /// The same of some of its values only; `block` is all of it, and a slice that is not inside is a
+  /// RunFailure.
+  virtual std::vector<char> get_slice(const unsigned int part,
+                                      const std::string &name,
+                                      const Slice       &slice,
+                                      Block             &block) const = 0;
 
   virtual bool has(const unsigned int part, const std::string &name) const = 0;
 
@@ -62,7 +75,8 @@ public:
  *   own       means nothing on other ranks: it is left as it is
  *   in_order  one list through all ranks: it is cut anew
  *   rows      particles: each part's go to one rank, who hands them on
- *   keyed     nodes and elements: found again by their keys
+ *   keyed     nodes and elements: found again by their keys; each rank reads all keys, but of the
+ *             rows those around its own, in pieces
  *
  * As many ranks as have saved get each its own back, bit by bit. Nothing here
  * communicates.
@@ -180,8 +194,33 @@ public:
   }
 
   /// Entries, n_together of which belong together, in the order of the ranks: other ranks get even
-  /// shares of them in the same order.
-  void in_order(const std::string &name, std::vector<int> &values, const unsigned int n_together);
+  /// shares of them in the same order, and read no more.
+  template <typename T>
+  void in_order(const std::string &name, std::vector<T> &values, const unsigned int n_together = 1)
+  {
+    if (is_exact())
+      return same(name, values);
+    std::vector<std::size_t> ends;
+    for (unsigned int part = 0; part < store.n_parts(); ++part)
+      ends.push_back((part > 0 ? ends.back() : 0) + look(part, name, describe<T>(0)).n_rows);
+    if (ends.back() % n_together != 0)
+      throw_not_of_a_piece(name);
+    const std::size_t n     = ends.back() / n_together;
+    const std::size_t begin = n * rank / n_ranks * n_together,
+                      end   = n * (rank + 1) / n_ranks * n_together;
+    values.resize(end - begin);
+    for (unsigned int part = 0; part < store.n_parts(); ++part)
+      {
+        const std::size_t before = (part > 0 ? ends[part - 1] : 0), first = std::max(begin, before),
+                          last = std::min(end, ends[part]);
+        if (first >= last)
+          continue;
+        const auto bytes = get_slice(part, name, {first - before, last - first, 0, 1});
+        std::copy(bytes.begin(),
+                  bytes.end(),
+                  reinterpret_cast<char *>(values.data() + (first - begin)));
+      }
+  }
 
   void rows(const std::string &name, Columns &columns);
 
@@ -326,6 +365,11 @@ private:
   /// Checks that the block is of the type and width, and has as many rows if that is not 0.
   std::vector<char> get(const unsigned int part, const std::string &name, const Block &block) const;
 
+  /// What there is, checked like that.
+  Block look(const unsigned int part, const std::string &name, const Block &block) const;
+  std::vector<char>
+  get_slice(const unsigned int part, const std::string &name, const Slice &slice) const;
+
   void save_columns(const std::string &name, Columns &columns);
   /// Appends the rows of one part.
   void load_columns(const unsigned int part, const std::string &name, Columns &columns) const;
@@ -334,6 +378,9 @@ private:
                    const unsigned int                n_owned,
                    Columns                          &columns,
                    const Summed                     &summed) const;
+
+  /// Rows by key are read in pieces of at most so many bytes.
+  static constexpr std::size_t bytes_at_once = std::size_t(1) << 22;
 
   ArchiveStore      &store;
   const Mode         mode;

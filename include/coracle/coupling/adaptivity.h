@@ -4,6 +4,7 @@
 #include <coracle/coupling/contact_coupling.h>
 #include <coracle/coupling/particle_refinement.h>
 #include <coracle/coupling/refinement_criteria.h>
+#include <coracle/coupling/structure_work.h>
 
 namespace coracle
 {
@@ -24,7 +25,8 @@ struct AdaptivityState
 
 /**
  * Between steps: the octree becomes finer and coarser as criteria ask, particles split and merge
- * with their cells, and all is shared out among the ranks anew where the work has become uneven.
+ * with their cells, and all, elements of structures too, is shared out among the ranks anew where
+ * the work has become uneven.
  */
 template <int dim>
 class Adaptivity
@@ -48,12 +50,16 @@ public:
               const double              time,
               const double              dt);
 
-  /// Largest over mean work of the ranks [1]. Collective.
+  /// Largest over mean work of the ranks: cells, particles, elements, contacts [1]. Collective.
   double imbalance(const MaterialPointSystem<dim> &points,
+                   const StructureSystem<dim>     &structure,
                    const ContactCoupling<dim>     &contacts) const;
 
-  /// Between steps: cells are shared out anew if the work is uneven. Collective.
-  void balance(MaterialPointSystem<dim> &points, ContactCoupling<dim> &contacts);
+  /// Between steps: what makes the work uneven is shared out anew, if it is too uneven. Collective.
+  /// @return has anything been shared out?
+  bool balance(MaterialPointSystem<dim> &points,
+               StructureSystem<dim>     &structure,
+               ContactCoupling<dim>     &contacts);
 
   AdaptivityState state;
 
@@ -69,8 +75,16 @@ private:
   std::vector<double> work(const MaterialPointSystem<dim> &points,
                            const ContactCoupling<dim>     &contacts) const;
 
+  /// This rank's work of the octree with its particles, then of each structure, solids first.
+  std::vector<double> work_of_parts(const MaterialPointSystem<dim>            &points,
+                                    const ContactCoupling<dim>                &contacts,
+                                    const typename StructureWork<dim>::ByBody &elements) const;
+  /// Which of them make the work uneven. Collective.
+  static std::vector<bool> uneven_parts(const std::vector<double> &work, MPI_Comm comm);
+
   RefinementCriteria<dim> criteria;
   ParticleRefinement<dim> refinement;
+  StructureWork<dim>      structure_work;
   unsigned int            interval, balance_interval;
   double                  interval_in_cells, largest_imbalance, contact_weight;
   /// Results do not depend on the ranks.

@@ -42,6 +42,14 @@ public:
   /// Meshes of structures have new elements and nodes. Collective.
   void structure_changed(StructureSystem<dim> &structure);
 
+  /// Meshes of structures have the same elements and nodes on other ranks. Collective.
+  void structure_shared_out(StructureSystem<dim> &structure);
+
+  /// Surface nodes as points, and how many contacts they have.
+  const StructurePoints<dim> &structure_points() const { return surface_nodes; }
+  /// What was counted so far counts half from now on.
+  void fade_structure_points() { surface_nodes.fade(); }
+
   /// What contact did in the leaves of this rank since the octree changed or this was last
   /// forgotten.
   const LeafContacts &leaf_contacts() const { return in_leaves; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <coracle/coupling/contact_coupling.h>
+#include <coracle/coupling/structure_work.h>
 
 #include <vector>
 
@@ -86,6 +86,9 @@ private:
                                        StructureSystem<dim>           &structure);
 
   /// By body, solids first; none: nothing is adapted.
-  std::vector<Plan> plans;
+  std::vector<Plan>        plans;
+  const StructureWork<dim> work;
+  /// Are changed meshes shared out by their work, and not evenly?
+  bool by_work;
 };
 } // namespace coracle

@@ -32,7 +32,27 @@ public:
   /// the distances stay as they are. Collective.
   void structure_changed(StructureSystem<dim> &structure);
 
+  /// The surface has the same nodes and facets on other ranks: all that is known of points goes
+  /// with them. Collective.
+  void shared_out(StructureSystem<dim> &structure);
+
   unsigned int n_sets() const { return parts.size(); }
+
+  /// Contacts of points as found for a step; sets before the first one are others'.
+  void count(const std::vector<contact::Contact<dim>> &contacts, const unsigned int first_set);
+  /// What was counted so far counts half from now on.
+  void fade();
+  /// Calls action(i, n) for all points of a body on this rank: place among its surface_nodes(), and
+  /// contacts in a step, on average of late.
+  template <typename Action>
+  void for_each_number(const unsigned int body, const Action &action) const
+  {
+    if (parts.empty() || n_steps == 0)
+      return;
+    const Part &part = parts[body];
+    for (std::size_t i = 0; i < part.nodes.size(); ++i)
+      action(part.nodes[i] - part.first_node, part.n_contacts[i] / n_steps);
+  }
 
   /// One set for each body with points, with positions and predicted velocities as they are now.
   void fill(const contact::Surface<dim>                           &surface,
@@ -41,19 +61,20 @@ public:
   /// Structures that start nearer to each other than the contact distance: a UserError. Collective.
   void refuse_initial_overlaps(const Parameters &root, StructureSystem<dim> &structure);
 
-  /// The sides of sheets that points are on.
+  /// The sides of sheets that points are on, and what was counted.
   void serialize(Archive &archive);
 
 private:
   /// One body's points on this rank.
   struct Part
   {
-    unsigned int                         body;
+    unsigned int                         body, first_node;
     double                               radius;
     std::vector<unsigned int>            nodes;
     std::vector<std::uint64_t>           keys;
     std::array<std::vector<double>, dim> position, velocity;
     std::vector<std::vector<double>>     side;
+    std::vector<double>                  n_contacts;
   };
 
   void make_parts(const StructureSystem<dim>  &structure,
@@ -63,5 +84,7 @@ private:
   MPI_Comm          comm;
   std::vector<Part> parts;
   double            smallest_edge;
+  /// In which contacts were counted.
+  double n_steps = 0;
 };
 } // namespace coracle

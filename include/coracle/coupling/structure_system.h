@@ -69,10 +69,18 @@ public:
   /// Momentum that contact has given to each body so far, solids first; this rank's share [N s].
   const std::vector<dealii::Tensor<1, dim>> &contact_momentum() const { return received; }
 
-  /// Between steps: halves elements of some bodies, by body (solids first) and element; none given
+  /// Work of the elements, by body (solids first) and element.
+  using Work = std::vector<std::vector<double>>;
+
+  /// Between steps: halves elements of some bodies, by body and element; none given
   /// for a body: it stays. True if anything has changed, then the surface is another one.
   /// Collective; throws RunFailure, on all ranks.
-  bool refine(const std::vector<std::vector<bool>> &wanted);
+  /// @param work by which changed bodies are shared out; none: as before
+  bool refine(const std::vector<std::vector<bool>> &wanted, const Work &work = {});
+
+  /// Between steps: some of the bodies are shared out among the ranks anew by the work of their
+  /// elements. All stays as it is, also keys of nodes and facets, but local numbers. Collective.
+  void share_out(const std::vector<bool> &bodies, const Work &work);
 
   /// Between steps. Collective. True if meshes have changed since the start of the case.
   bool serialize(Archive &archive);

@@ -24,9 +24,13 @@ public:
 
   void put(const std::string &name, const Block &block, const void *values) override;
   std::vector<char>
-               get(const unsigned int part, const std::string &name, Block &block) const override;
-  bool         has(const unsigned int part, const std::string &name) const override;
-  unsigned int n_parts() const override { return files.size(); }
+  get(const unsigned int part, const std::string &name, Block &block) const override;
+  std::vector<char> get_slice(const unsigned int part,
+                              const std::string &name,
+                              const Slice       &slice,
+                              Block             &block) const override;
+  bool              has(const unsigned int part, const std::string &name) const override;
+  unsigned int      n_parts() const override { return files.size(); }
 
   /// The file of what was put, after which nothing more can be.
   std::vector<char> image();

@@ -57,19 +57,31 @@ public:
 
   /**
    * Halves the elements asked for in all directions, and others so that neighbours differ by one
-   * level at most; then shares the elements out evenly. Parts of elements fill them exactly, as
-   * shape functions say, so that the surface stays where it is. Collective.
+   * level at most; then shares the elements out by their weights, parts being as heavy as the
+   * whole. Parts of elements fill them exactly, as shape functions say, so that the surface stays
+   * where it is. Collective.
    *
    * @param wanted by element
    * @return has anything changed, on any rank?
    */
   bool refine(const std::vector<bool> &wanted, CarriedState<dim> &state);
 
-  /// Refines until each of the elements has one of the keys, of any rank's elements; the positions
-  /// of nodes are those of the mesh as it was. Collective.
-  void refine_to(const std::vector<std::uint64_t> &keys);
+  /// Elements are shared out by these from now on; before they count alike. Collective.
+  /// @param by_element more than 0; a thousandth of 1 is the finest difference that counts
+  void set_weights(const std::vector<double> &by_element);
+  /// The same elements on other ranks, by their weights. Collective.
+  void share_out(CarriedState<dim> &state);
+  /// Those that the elements were last shared out by; all 1 if they count alike.
+  const std::vector<double> &weights() const { return weight; }
+  bool                       is_weighted() const { return weighted; }
 
-  /// How often the mesh has changed since it was made.
+  /// Which of the elements with these keys are wanted? Collective.
+  using AreThere = std::function<std::vector<bool>(const std::vector<std::uint64_t> &keys)>;
+  /// Refines until all elements are wanted ones; the positions of nodes are those of the mesh as it
+  /// was. Collective.
+  void refine_to(const AreThere &are_there);
+
+  /// How often the mesh has changed, or has been shared out anew, since it was made.
   unsigned int n_changes() const { return changes; }
 
   /// How often an element has been halved since the coarse mesh.
@@ -102,6 +114,8 @@ public:
 private:
   class Carrier;
 
+  /// Does what changes the forest, and takes the state along.
+  void carry(CarriedState<dim> &state, const std::function<void()> &change);
   void refine_region(const Parameters &section);
   /// Fill everything from the triangulation as it is.
   void number_nodes();
@@ -112,6 +126,8 @@ private:
 
   unsigned int              changes = 0;
   std::vector<unsigned int> levels;
+  std::vector<double>       weight;
+  bool                      weighted = false;
 };
 
 extern template class StructureMesh<2>;

@@ -69,7 +69,10 @@ public:
 
   /// Halves elements of a mesh that is none of sheets, see SolidBody::refine: the surface gets more
   /// facets and nodes, the body stays what it is. Collective.
-  bool         refine(const std::vector<bool> &wanted);
+  bool refine(const std::vector<bool> &wanted);
+  /// The same elements on other ranks, see SolidBody::share_out; sheets stay where they are.
+  /// Collective.
+  void         share_out();
   unsigned int n_mesh_changes() const;
 
   Energies         energies() const;

@@ -92,7 +92,11 @@ public:
    */
   bool refine(const std::vector<bool> &wanted);
 
-  /// How often the mesh has changed since the start of the case.
+  /// Between steps: the same elements on other ranks, by the weights they were given; all of the
+  /// state goes with them as it is. Collective.
+  void share_out();
+
+  /// How often the mesh has changed, or has been shared out anew, since the start of the case.
   unsigned int n_mesh_changes() const { return mesh().n_changes(); }
 
   /// Of each element: how far its mean stress is from what means over the elements at its nodes
@@ -132,7 +136,9 @@ private:
     double               kinetic = 0;
   };
   Motion motion() const;
-  /// All that is made from the mesh.
+  /// All that is made from the mesh but for masses, which the state may bring.
+  void take_mesh(const CarriedState<dim> &state);
+  /// The same with masses.
   void follow_mesh(const CarriedState<dim> &state);
   /// The same, for a state that is loaded next.
   void make_room();

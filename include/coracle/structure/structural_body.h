@@ -66,6 +66,14 @@ public:
     return vector(NodeColumns<dim>::contact_force, node);
   }
 
+  /// Elements are shared out by these from the next change or sharing out on; of no effect on a
+  /// body of sheets. Collective.
+  void set_element_weights(const std::vector<double> &weights)
+  {
+    if (auto *const mesh = dynamic_cast<StructureMesh<dim> *>(body_mesh.get()))
+      mesh->set_weights(weights);
+  }
+
 protected:
   /// Entries of the surface, besides the section `Mesh`.
   static void declare_surface(Declaration &body_section);
@@ -74,7 +82,7 @@ protected:
   /// After the mesh has changed.
   void find_surface_nodes();
 
-  /// Saves which elements there are, or refines the mesh until it has those. Collective.
+  /// Saves which elements there are and how they are shared out, or makes the mesh so. Collective.
   /// @return has the mesh been changed?
   static bool serialize_mesh(Archive &archive, StructureMesh<dim> &mesh);
   /// @param summed columns to which each rank has added what its elements give

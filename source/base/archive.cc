@@ -16,6 +16,21 @@ does_not_fit(const std::string &name, const std::string &why)
                     "'" + name + "': " + why,
                     "go on with the program and the parameter file that wrote it");
 }
+/// Some rows of columns as they are stored: all of the first quantity, then all of the next.
+struct Piece
+{
+  std::size_t       first, length;
+  std::vector<char> bytes;
+
+  double operator()(const unsigned int column, const std::size_t row) const
+  {
+    double result;
+    std::memcpy(&result,
+                bytes.data() + (column * length + row - first) * sizeof(double),
+                sizeof(double));
+    return result;
+  }
+};
 } // namespace
 
 void
@@ -141,9 +156,10 @@ Archive::load_by_key(const std::string                &name,
   for (unsigned int c = summed.first; c < summed.first + summed.n; ++c)
     std::fill_n(columns[c], columns.size(), 0.);
 
-  // Rows lie one behind the other, one for each quantity.
-  const std::size_t n_columns = columns.n_columns(),
-                    at_once = std::max<std::size_t>(1, bytes_at_once / sizeof(double) / n_columns);
+  const std::size_t n_columns        = columns.n_columns(),
+                    at_once          = std::max<std::size_t>(1,
+                                                    bytes_at_once / sizeof(double) /
+                                                      std::max<std::size_t>(1, n_columns));
   std::size_t                n_found = 0;
   std::vector<std::uint64_t> saved_keys(at_once);
   for (unsigned int part = 0; part < store.n_parts(); ++part)
@@ -165,15 +181,9 @@ Archive::load_by_key(const std::string                &name,
               mine.emplace_back(i, found->second);
           if (mine.empty())
             continue;
-          const std::size_t first = mine.front().first, length = mine.back().first + 1 - first;
-          const auto values = get_slice(part, "values", {0, n_columns, begin + first, length});
-          const auto value  = [&](const unsigned int c, const std::size_t i) {
-            double result;
-            std::memcpy(&result,
-                        values.data() + (c * length + i - first) * sizeof(double),
-                        sizeof(double));
-            return result;
-          };
+          Piece value{mine.front().first, mine.back().first + 1 - mine.front().first, {}};
+          value.bytes =
+            get_slice(part, "values", {0, n_columns, begin + value.first, value.length});
           for (const auto &[from, to] : mine)
             {
               const bool is_owned = begin + from < n_saved_owned;

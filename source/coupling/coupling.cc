@@ -239,7 +239,7 @@ Coupling<dim>::advance(const double end_time)
   });
 
   timed("meshless fluid", [&] {
-    fluids.advance(current_time, dt, structure, timed);
+    fluids.advance(current_time, current_dt, dt, structure, timed);
     timed.count("point", fluids.n_points());
   });
 

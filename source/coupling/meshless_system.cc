@@ -2,6 +2,7 @@
 #include <coracle/base/mpi.h>
 #include <coracle/coupling/initial_velocity.h>
 #include <coracle/coupling/meshless_system.h>
+#include <coracle/meshless/surface_seeds.h>
 #include <coracle/particles/shape.h>
 #include <coracle/structure/selection.h>
 
@@ -199,6 +200,7 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
           look_at(structure, fluid);
           check_surfaces(body, fluid);
           fluid.clear_structures();
+          put_on_structures(body, octree, fluid);
           fluid.remesh();
         }
     }
@@ -243,6 +245,41 @@ MeshlessSystem<dim>::generate(const Parameters     &body,
                      "choose a smaller spacing, or move the shape into the grid's box");
 }
 
+// Where the fluid is beside a structure, points slide on it. Their ids follow those of the lattice.
+template <int dim>
+void
+MeshlessSystem<dim>::put_on_structures(const Parameters     &body,
+                                       const Octree<dim>    &octree,
+                                       meshless::Fluid<dim> &fluid) const
+{
+  if (!fluid.structures.slip || fluid.structures.empty())
+    return;
+  const double                   spacing = fluid.options.spacing;
+  const auto                     shape   = read_shape<dim>(body);
+  const dealii::BoundingBox<dim> box     = shape->bounding_box();
+  const auto                     beside  = [&](const meshless::SurfaceSeed<dim> &seed) {
+    return seed.position + 0.05 * spacing * seed.normal;
+  };
+  const auto is_wet = [&](const meshless::SurfaceSeed<dim> &seed) {
+    const dealii::Point<dim> x = beside(seed), inner = x + 1e-9 * (box.center() - x);
+    return fluid.options.box.point_inside(x) && fluid.options.box.point_inside(seed.position) &&
+           shape->contains(inner) && !fluid.structures.contains(x);
+  };
+  const InitialVelocity<dim> velocity(body);
+  std::uint64_t              id = ClosedLattice<dim>(box, spacing).size(), n = 0;
+  for (const auto &seed : meshless::seed<dim>(fluid.structures.surface, spacing, is_wet))
+    {
+      ++id;
+      const int leaf = octree.find(seed.position);
+      if (leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()))
+        continue;
+      fluid.add_point(seed.position, velocity(seed.position), id);
+      fluid.columns[meshless::FluidLayout<dim>::sliding][fluid.n_fluid() - 1] = 1;
+      ++n;
+    }
+  fluid.counts.created += mpi::sum(n, comm);
+}
+
 template <int dim>
 double
 MeshlessSystem<dim>::step_limit() const
@@ -282,8 +319,9 @@ MeshlessSystem<dim>::push(StructureSystem<dim> &structure, const meshless::Fluid
     return;
   const std::size_t                   n = structure.publish_surface().nodes.size();
   std::vector<dealii::Tensor<1, dim>> impulse(n), correction(n);
-  for (unsigned int i = 0; i < fluid.structures.nodes.size(); ++i)
-    impulse[fluid.structures.nodes[i].place] = fluid.node_impulses[i];
+  for (unsigned int i = 0; i < n; ++i)
+    if (const int number = fluid.structures.surface.number[i]; number >= 0)
+      impulse[i] = fluid.node_impulses[number];
   std::vector<typename contact::ContactSystem<dim>::RigidImpulse> rigid;
   for (const auto &push : fluid.rigid_impulses)
     rigid.push_back({push.impulse, push.moment, {}, {}});
@@ -293,6 +331,7 @@ MeshlessSystem<dim>::push(StructureSystem<dim> &structure, const meshless::Fluid
 template <int dim>
 void
 MeshlessSystem<dim>::advance(const double          time,
+                             const double          last_dt,
                              const double          dt,
                              StructureSystem<dim> &structure,
                              TimingTable          &timed)
@@ -300,7 +339,7 @@ MeshlessSystem<dim>::advance(const double          time,
   for (auto &body : bodies)
     {
       look_at(structure, body);
-      body.advance(time, dt, timed);
+      body.advance(time, dt, timed, 0.5 * (last_dt + dt));
       push(structure, body);
       if (!failure && body.failure)
         failure.emplace(*body.failure);

@@ -18,7 +18,10 @@ Fluid<dim>::Fluid(const std::string &name, const FluidOptions<dim> &options, con
   , body_name(name)
   , comm(comm)
   , pressure_system(comm)
-{}
+{
+  structures.slip  = options.slips_on_structures;
+  structures.reach = options.spacing;
+}
 
 template <int dim>
 void
@@ -52,6 +55,7 @@ Fluid<dim>::add_point(const dealii::Point<dim> &position,
   columns[Layout::spacing][row] = options.spacing;
   columns[Layout::id][row]      = id;
   columns[Layout::walls][row]   = on;
+  columns[Layout::sliding][row] = 0;
   next_id                       = std::max(next_id, id + 1);
 }
 
@@ -98,6 +102,8 @@ Fluid<dim>::fill_cloud()
       const double share = options.surface_alpha / options.tessellation.alpha;
       points.spacing[i] = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
       walls[i]          = columns[Layout::walls][i];
+      if (columns[Layout::sliding][i] > 0)
+        points.kind[i] = PointKind::sliding;
     }
 }
 
@@ -177,7 +183,7 @@ Fluid<dim>::find_free_surface()
       for (const unsigned int node : facet)
         {
           common &= walls[node];
-          structure &= is_structure(node);
+          structure &= is_structure(node) || is_sliding(node);
         }
       if (structure)
         wall_facets.push_back(facet);
@@ -188,10 +194,12 @@ Fluid<dim>::find_free_surface()
           n_free[node] += 1;
     }
   halo.sum_to_owners(n_free);
+  at_surface.assign(points.n_own, 0);
   free_surface.assign(points.n_own, 0);
   isolated.assign(points.n_own, 0);
   for (std::size_t i = 0; i < points.n_own; ++i)
     {
+      at_surface[i]   = n_free[i] > 0;
       isolated[i]     = !mesh.has_element[i];
       free_surface[i] = !is_structure(i) && (isolated[i] || n_free[i] > 0);
       if (isolated[i])
@@ -212,6 +220,7 @@ Fluid<dim>::find_free_surface()
         if (points.id[i] == lowest)
           no_pressure[i] = 1;
     }
+  halo.update(at_surface);
   halo.update(free_surface);
   halo.update(isolated);
   halo.update(no_pressure);

@@ -150,6 +150,15 @@ FluidOptions<dim>::declare(Declaration &body)
     "system.",
     0.,
     0.1);
+  body.choice(
+    "Structures",
+    "auto",
+    {"auto", "slip", "stick"},
+    "What the surfaces of structures do to the fluid. slip: it moves along them freely, and "
+    "their facets may be larger than the spacing; stick: it moves as they do, and facets "
+    "must be about as large as the spacing; auto: slip in the plane where Viscosity is 0. Sheets, "
+    "and "
+    "edges and corners of bodies, always stick.");
   declare_refill(body);
   declare_solver(body);
 }
@@ -180,6 +189,19 @@ FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gr
   o.largest_move                 = body.quantity("Largest move");
   o.volume_relaxation            = body.quantity("Volume relaxation");
   o.gravity                      = gravity;
+  const std::string structures   = body.choice("Structures");
+  o.slips_on_structures =
+    structures == "slip" || (structures == "auto" && o.viscosity == 0 && dim == 2);
+  if (o.slips_on_structures && dim == 3)
+    throw body.error("Structures",
+                     "in space the fluid does not slip on structures",
+                     "Structures = slip in three dimensions",
+                     "set Structures to auto or stick");
+  if (o.slips_on_structures && o.viscosity > 0)
+    throw body.error("Structures",
+                     "a viscous fluid does not slip on structures",
+                     "Viscosity = " + std::to_string(o.viscosity) + " Pa s",
+                     "set Structures to stick, or Viscosity to 0");
   if (o.tessellation.alpha < (dim == 2 ? 0.72 : 0.88))
     throw body.error("Alpha",
                      "no element can be kept",

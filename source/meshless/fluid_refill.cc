@@ -61,10 +61,12 @@ Fluid<dim>::refill()
 {
   const std::size_t          n_before = n_cloud;
   std::vector<unsigned char> taken_out(n_before, 0);
+  stay_on_structures();
   find_strays(taken_out);
   find_corner_twins(taken_out);
   std::vector<dealii::Point<dim>> x;
   new_positions(x);
+  find_slid_together(taken_out);
   find_inside(x, taken_out);
   if (options.refill.enabled)
     {
@@ -138,7 +140,8 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
 {
   std::vector<double> marks(points.size());
   const auto          rank_of = [this](const unsigned int i) {
-    return std::array<double, 3>{is_structure(i) ? dim + 1. : double(n_faces(walls[i])),
+    return std::array<double, 3>{is_structure(i) ? dim + 1.
+                                                          : double(n_faces(walls[i]) + is_sliding(i)),
                                  double(free_surface[i]),
                                  -double(points.id[i])};
   };
@@ -149,10 +152,12 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
       return;
     const unsigned int loser = rank_of(i) < rank_of(j) ? i : j;
     // A corner may be all that holds the fluid's outline there.
-    if (!is_structure(loser) && n_faces(walls[loser]) < dim && (!free_surface[loser] || share < 1))
+    if (!is_structure(loser) && (n_faces(walls[loser]) < dim || is_sliding(loser)) &&
+        (!free_surface[loser] || share < 1))
       marks[loser] += 1;
   });
   find_flattened(x, marks);
+  find_near_structures(x, marks);
   halo.sum_to_owners(marks);
   std::uint64_t n       = 0;
   const auto    corners = options.box.get_boundary_points();
@@ -196,7 +201,12 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
     const double h = 0.5 * (points.spacing[i] + points.spacing[j]);
     if (is_structure(i) && is_structure(j))
       return;
-    const bool   on_boundary = (walls[i] & walls[j]) || (free_surface[i] && free_surface[j]);
+    // Towards a corner above the water the surface would climb.
+    if ((is_structure(i) && at_surface[i] && is_sliding(j)) ||
+        (is_structure(j) && at_surface[j] && is_sliding(i)))
+      return;
+    const bool on_boundary =
+      (walls[i] & walls[j]) || (free_surface[i] && free_surface[j]) || is_along_structure(i, j, x);
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
     const double length_square = x[i].distance_square(x[j]);
@@ -251,6 +261,11 @@ Fluid<dim>::insert_between(const std::array<unsigned int, 2>     &rows,
   columns[Layout::id][row]       = id;
   columns[Layout::walls][row]    = walls[i] & walls[j];
   columns[Layout::free][row]     = free_surface[i] && free_surface[j];
+  columns[Layout::sliding][row]  = 0;
+  typename StructureSurface<dim>::Place place;
+  if (is_along_structure(i, j, x) &&
+      structures.surface.find_nearest(x[i] + 0.5 * (x[j] - x[i]), place))
+    put_on_structure(row, place);
 }
 
 template class Fluid<2>;

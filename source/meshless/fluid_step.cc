@@ -28,18 +28,26 @@ Fluid<dim>::step_limit() const
       if (v > 0 || g > 0)
         step = std::min(step, 2 * move / (v + std::sqrt(v * v + 2 * g * move)));
     }
+  for (const auto &node : structures.surface.nodes)
+    step =
+      std::min(step,
+               options.largest_move * options.spacing / std::max(node.velocity.norm(), 1e-300));
   return mpi::min(step, comm);
 }
 
 template <int dim>
 void
-Fluid<dim>::advance(const double time, const double dt, TimingTable &timed)
+Fluid<dim>::advance(const double time,
+                    const double dt,
+                    TimingTable &timed,
+                    const double push_duration)
 {
+  push_time = push_duration > 0 ? push_duration : dt;
+  // Of structures too that of the step before: without the fluid a body that floats would fall.
   moving  = velocity;
   last_dt = dt;
   surface_pressure.resize(points.size());
-  move_structures(dt, false);
-  halo.update(moving);
+  carry_points();
   for (unsigned int iteration = 0; iteration < options.n_iterations; ++iteration)
     {
       timed("elements", [&] { move_elements(dt, iteration, timed); });
@@ -248,14 +256,12 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
         right_side[i] += factor * swelling * moved_volume[i] - surface_area[i] * scratch[i];
         surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_volume[i];
       }
-  for (std::size_t i = n_cloud; i < points.n_own; ++i)
-    if (const auto &node = structures.nodes[i - n_cloud]; !no_pressure[i])
+  for (const auto &point : carried)
+    if (const std::size_t i = point.row; !no_pressure[i])
       {
-        const Vector &area = wall_area[i - n_cloud];
-        right_side[i] -= factor * (area * node.velocity);
-        if (node.rigid < 0)
-          for (unsigned int d = 0; d < dim; ++d)
-            surface[i] += options.density / theta * area[d] * area[d] * node.inverse_mass[d];
+        right_side[i] -= factor * (wall_area[i] * structures.velocity_of(point));
+        surface[i] +=
+          options.density * push_time / (theta * dt) * structures.softness(point, wall_area[i]);
       }
   timed("matrix", [&] { pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure); });
   // In space flat elements change so much between iterations that the old one does not fit.
@@ -269,7 +275,7 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
                                  options.solver,
                                  [this](double *result, const double *p) {
                                    add_surface_terms(result, p);
-                                   add_rigid_bodies(result, p);
+                                   add_structures(result, p);
                                  });
   });
   ++pressure_solves;
@@ -324,7 +330,7 @@ Fluid<dim>::correct(const double dt)
         }
       moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
     }
-  move_structures(dt, true);
+  move_structures();
   halo.update(moving);
   halo.update(corrected);
 }
@@ -366,7 +372,11 @@ Fluid<dim>::move(const double dt)
         }
       columns[Layout::pressure][i] = pressure[i];
       columns[Layout::walls][i]    = on;
+      columns[Layout::sliding][i]  = 0;
     }
+  for (std::size_t k = 0; k < carried.size(); ++k)
+    if (const std::size_t i = carried[k].row; i < n_cloud && is_held(i, carried_normal[k]))
+      columns[Layout::sliding][i] = 1;
 }
 
 template <int dim>

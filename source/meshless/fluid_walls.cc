@@ -77,8 +77,8 @@ Fluid<dim>::add_structure_points()
   points.n_own = n_cloud + structures.nodes.size();
 }
 
-// All facets of the boundary beside a node of a structure: it moves with the body whatever they
-// are. What was added to the free surface's areas is taken from there.
+// Of structure nodes, all facets of the boundary beside them: they move with the body whatever
+// these are, and what was added to the free surface's areas is taken from there.
 template <int dim>
 void
 Fluid<dim>::find_wall_areas()
@@ -91,61 +91,69 @@ Fluid<dim>::find_wall_areas()
         area[node] += whole / dim;
     }
   halo.sum_to_owners(area);
-  wall_area.resize(structures.nodes.size());
+  wall_area.assign(area.begin(), area.begin() + points.n_own);
   for (std::size_t i = n_cloud; i < points.n_own; ++i)
     {
-      wall_area[i - n_cloud] = area[i] + surface_area[i];
-      surface_area[i]        = Vector();
+      wall_area[i] += surface_area[i];
+      surface_area[i] = Vector();
     }
 }
 
 /**
- * Velocities of structure nodes at the end of the step: those without the fluid, and what its
- * pressure adds, p a for each node, in this step so far.
+ * Velocities on structures at the end of the step: those without the fluid, and what its
+ * pressure adds, p a for each point, in this step so far.
  */
 template <int dim>
 void
-Fluid<dim>::move_structures(const double dt, const bool with_pressure)
+Fluid<dim>::move_structures()
 {
-  node_impulses.assign(structures.nodes.size(), Vector());
-  rigid_impulses.assign(structures.rigids.size(), {});
-  if (with_pressure && !structures.rigids.empty())
+  typename StructureWalls<dim>::Pushes pushes;
+  node_impulses.assign(structures.surface.nodes.size(), Vector());
+  pushes.rigid.assign(structures.rigids.size(), {});
+  if (structures.acts_on_others())
     {
-      rigid_impulses = structures.sum_of_pressures(pressure.data() + n_cloud, wall_area, comm);
-      for (auto &push : rigid_impulses)
+      pushes = structures.sum_of_pressures(pressure.data(), wall_area, carried, comm);
+      for (auto &push : pushes.rigid)
         {
-          push.impulse *= dt;
-          push.moment *= dt;
+          push.impulse *= push_time;
+          push.moment *= push_time;
         }
+      for (std::size_t n = 0; n < pushes.node.size(); ++n)
+        node_impulses[n] = pushes.node[n] *= push_time;
     }
+  rigid_impulses = pushes.rigid;
   for (std::size_t i = n_cloud; i < points.n_own; ++i)
     {
       const auto &node = structures.nodes[i - n_cloud];
-      Vector      v    = node.velocity + structures.velocity_of(i - n_cloud, rigid_impulses);
-      if (with_pressure && node.rigid < 0)
+      Vector      v = node.velocity + structures.velocity_of(structures.carried(i, node), pushes);
+      if (node.rigid < 0 && pushes.node.empty())
         {
-          node_impulses[i - n_cloud] = dt * pressure[i] * wall_area[i - n_cloud];
+          node_impulses[node.number] = push_time * pressure[i] * wall_area[i];
           for (unsigned int d = 0; d < dim; ++d)
-            v[d] += node.inverse_mass[d] * node_impulses[i - n_cloud][d];
+            v[d] += node.inverse_mass[d] * node_impulses[node.number][d];
         }
-      moving[i] = v;
-      if (with_pressure)
-        corrected[i] = v;
+      moving[i] = corrected[i] = v;
     }
+  slide(pushes);
 }
 
-// rho / theta Q M^-1 Q^T, with Q^T p the pressure's force and moment on the bodies.
+// rho / theta Q M^-1 Q^T, with Q^T p the pressure's force and moment on the bodies, or its forces
+// on their nodes; without what is in the matrix of it.
 template <int dim>
 void
-Fluid<dim>::add_rigid_bodies(double *result, const double *p) const
+Fluid<dim>::add_structures(double *result, const double *p) const
 {
-  if (structures.rigids.empty())
+  if (!structures.acts_on_others())
     return;
-  const auto push = structures.sum_of_pressures(p + n_cloud, wall_area, comm);
-  for (std::size_t i = n_cloud; i < points.n_own; ++i)
-    if (!no_pressure[i])
-      result[i] += options.density / options.time_weight *
-                   (wall_area[i - n_cloud] * structures.velocity_of(i - n_cloud, push));
+  const auto push = structures.sum_of_pressures(p, wall_area, carried, comm);
+  for (const auto &point : carried)
+    if (const std::size_t i = point.row; !no_pressure[i])
+      {
+        double flow = wall_area[i] * structures.velocity_of(point, push);
+        if (!push.node.empty())
+          flow -= structures.softness(point, wall_area[i]) * p[i];
+        result[i] += options.density * push_time / (options.time_weight * last_dt) * flow;
+      }
 }
 
 // Drops that flew into a body.
@@ -158,7 +166,7 @@ Fluid<dim>::find_inside(const std::vector<dealii::Point<dim>> &x,
     return;
   std::uint64_t n = 0;
   for (std::size_t i = 0; i < n_cloud; ++i)
-    if (!taken_out[i] && structures.contains(x[i]))
+    if (!taken_out[i] && columns[Layout::sliding][i] == 0 && structures.contains(x[i]))
       {
         taken_out[i] = 1;
         ++n;

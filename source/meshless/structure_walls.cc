@@ -40,41 +40,34 @@ angle(const std::array<dealii::Point<3>, 3> &facet, const dealii::Point<3> &x)
 
 template <int dim>
 void
-StructureWalls<dim>::update(const contact::Surface<dim>                   &surface,
+StructureWalls<dim>::update(const contact::Surface<dim>                   &published,
                             const std::vector<int>                        &rigid_of_node,
                             const std::vector<contact::RigidUnknown<dim>> &rigid_unknowns,
                             const MPI_Comm                                 comm)
 {
   rigids = rigid_unknowns;
+  surface.update(published, rigid_of_node, reach, comm);
   nodes.clear();
-  for (unsigned int i = 0; i < surface.nodes.size(); ++i)
-    if (const auto &node = surface.nodes[i]; node.owner == static_cast<int>(mpi::rank(comm)))
-      nodes.push_back(
-        {node.position, node.velocity, node.inverse_mass, node.key, i, rigid_of_node[i]});
-  std::vector<Simplex> mine;
-  for (const auto &facet : surface.facets)
-    {
-      if (surface.bodies[facet.body].kind != contact::SurfaceKind::closed)
-        continue;
-      const auto x = [&](const unsigned int v) { return surface.nodes[facet.nodes[v]].position; };
-      if constexpr (dim == 2)
-        mine.push_back({x(0), x(1)});
-      else
-        {
-          mine.push_back({x(0), x(1), x(2)});
-          if (facet.nodes[3] != facet.nodes[2])
-            mine.push_back({x(0), x(2), x(3)});
-        }
-    }
-  facets.clear();
-  for (const auto &some : dealii::Utilities::MPI::all_gather(comm, mine))
-    facets.insert(facets.end(), some.begin(), some.end());
+  deforms = false;
+  for (const auto &node : surface.nodes)
+    deforms |= node.rigid < 0;
+  for (const int n : surface.number)
+    if (n >= 0 && (!slip || surface.nodes[n].is_sharp))
+      {
+        const auto &node = surface.nodes[n];
+        nodes.push_back({node.position,
+                         node.velocity,
+                         node.inverse_mass,
+                         node.key,
+                         node.rigid,
+                         static_cast<unsigned int>(n)});
+      }
   for (unsigned int d = 0; d < dim; ++d)
     {
       low[d]  = std::numeric_limits<double>::max();
       high[d] = -low[d];
-      for (const Simplex &facet : facets)
-        for (const auto &x : facet)
+      for (const auto &facet : surface.facets)
+        for (const auto &x : surface.vertices(facet))
           {
             low[d]  = std::min(low[d], x[d]);
             high[d] = std::max(high[d], x[d]);
@@ -90,8 +83,8 @@ StructureWalls<dim>::contains(const dealii::Point<dim> &x) const
     if (x[d] < low[d] || x[d] > high[d])
       return false;
   double sum = 0;
-  for (const Simplex &facet : facets)
-    sum += angle(facet, x);
+  for (const auto &facet : surface.facets)
+    sum += angle(surface.vertices(facet), x);
   return std::fabs(sum) > dealii::numbers::PI * (dim == 2 ? 1 : 2);
 }
 
@@ -102,9 +95,10 @@ StructureWalls<dim>::is_nearer(const dealii::Point<dim> &x, const double reach) 
   for (unsigned int d = 0; d < dim; ++d)
     if (x[d] < low[d] - reach || x[d] > high[d] + reach)
       return false;
-  for (const Simplex &facet : facets)
+  for (const auto &nodes_of_facet : surface.facets)
     {
-      double square;
+      const auto facet = surface.vertices(nodes_of_facet);
+      double     square;
       if constexpr (dim == 2)
         square = contact::nearest_point(x, facet).distance_square;
       else
@@ -121,60 +115,126 @@ double
 StructureWalls<dim>::longest_edge() const
 {
   double longest = 0;
-  for (const Simplex &facet : facets)
+  for (const auto &facet : surface.facets)
     for (unsigned int i = 0; i < dim; ++i)
-      longest = std::max(longest, facet[i].distance(facet[(i + 1) % dim]));
+      {
+        const auto &a = surface.nodes[facet[i]], &b = surface.nodes[facet[(i + 1) % dim]];
+        if (!slip || (dim == 3 && a.is_sharp && b.is_sharp))
+          longest = std::max(longest, a.position.distance(b.position));
+      }
   return longest;
 }
 
 template <int dim>
-std::vector<typename StructureWalls<dim>::Push>
-StructureWalls<dim>::sum_of_pressures(const double              *p,
-                                      const std::vector<Vector> &area,
-                                      const MPI_Comm             comm) const
+typename StructureWalls<dim>::Carried
+StructureWalls<dim>::carried(const std::size_t row, const Node &node) const
+{
+  Carried point{row, {}, {}};
+  point.nodes.fill(node.number);
+  point.weights[0] = 1;
+  return point;
+}
+
+template <int dim>
+typename StructureWalls<dim>::Pushes
+StructureWalls<dim>::sum_of_pressures(const double               *p,
+                                      const std::vector<Vector>  &area,
+                                      const std::vector<Carried> &points,
+                                      const MPI_Comm              comm) const
 {
   constexpr unsigned int width = dim + 3;
-  std::vector<double>    sums(rigids.size() * width);
-  for (unsigned int i = 0; i < nodes.size(); ++i)
+  const std::size_t      begin = rigids.size() * width;
+  std::vector<double>    sums(begin + (couples() ? dim * surface.nodes.size() : 0));
+  for (const Carried &point : points)
     {
-      const auto &node = nodes[i];
-      if (node.rigid < 0)
-        continue;
-      double *const sum   = sums.data() + node.rigid * width;
-      const Vector  force = p[i] * area[i];
-      const Vector3 moment =
-        dealii::cross_product_3d(in_space<dim>(node.position - rigids[node.rigid].centre),
-                                 in_space<dim>(force));
-      for (unsigned int d = 0; d < dim; ++d)
-        sum[d] += force[d];
-      for (unsigned int d = 0; d < 3; ++d)
-        sum[dim + d] += moment[d];
+      const Vector force = p[point.row] * area[point.row];
+      const int    rigid = surface.nodes[point.nodes[0]].rigid;
+      if (rigid < 0 && couples())
+        for (unsigned int v = 0; v < dim; ++v)
+          for (unsigned int d = 0; d < dim; ++d)
+            sums[begin + dim * point.nodes[v] + d] += point.weights[v] * force[d];
+      else if (rigid >= 0)
+        {
+          const Vector3 moment =
+            dealii::cross_product_3d(in_space<dim>(place_of(point) - rigids[rigid].centre),
+                                     in_space<dim>(force));
+          for (unsigned int d = 0; d < dim; ++d)
+            sums[rigid * width + d] += force[d];
+          for (unsigned int d = 0; d < 3; ++d)
+            sums[rigid * width + dim + d] += moment[d];
+        }
     }
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
-  std::vector<Push> result(rigids.size());
+  Pushes result;
+  result.rigid.resize(rigids.size());
   for (unsigned int r = 0; r < rigids.size(); ++r)
     {
       for (unsigned int d = 0; d < dim; ++d)
-        result[r].impulse[d] = sums[r * width + d];
+        result.rigid[r].impulse[d] = sums[r * width + d];
       for (unsigned int d = 0; d < 3; ++d)
-        result[r].moment[d] = sums[r * width + dim + d];
+        result.rigid[r].moment[d] = sums[r * width + dim + d];
+    }
+  if (couples())
+    result.node.resize(surface.nodes.size());
+  for (unsigned int i = 0; i < result.node.size(); ++i)
+    for (unsigned int d = 0; d < dim; ++d)
+      result.node[i][d] = sums[begin + dim * i + d];
+  return result;
+}
+
+template <int dim>
+dealii::Point<dim>
+StructureWalls<dim>::place_of(const Carried &point) const
+{
+  dealii::Point<dim> x;
+  for (unsigned int v = 0; v < dim; ++v)
+    x += point.weights[v] * surface.nodes[point.nodes[v]].position;
+  return x;
+}
+
+template <int dim>
+typename StructureWalls<dim>::Vector
+StructureWalls<dim>::velocity_of(const Carried &point, const Pushes &pushes) const
+{
+  Vector result;
+  if (const int rigid = surface.nodes[point.nodes[0]].rigid; rigid < 0)
+    {
+      for (unsigned int v = 0; v < dim && !pushes.node.empty(); ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[d] += point.weights[v] * surface.nodes[point.nodes[v]].inverse_mass[d] *
+                       pushes.node[point.nodes[v]][d];
+    }
+  else
+    {
+      const auto   &body = rigids[rigid];
+      const Vector3 turn =
+        dealii::cross_product_3d(body.inverse_inertia * pushes.rigid[rigid].moment,
+                                 in_space<dim>(place_of(point) - body.centre));
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = body.inverse_mass[d] * pushes.rigid[rigid].impulse[d] + turn[d];
     }
   return result;
 }
 
 template <int dim>
 typename StructureWalls<dim>::Vector
-StructureWalls<dim>::velocity_of(const unsigned int i, const std::vector<Push> &push) const
+StructureWalls<dim>::velocity_of(const Carried &point) const
 {
-  const auto &node = nodes[i];
-  if (node.rigid < 0)
-    return {};
-  const auto   &body = rigids[node.rigid];
-  const Vector3 turn = dealii::cross_product_3d(body.inverse_inertia * push[node.rigid].moment,
-                                                in_space<dim>(node.position - body.centre));
-  Vector        result;
-  for (unsigned int d = 0; d < dim; ++d)
-    result[d] = body.inverse_mass[d] * push[node.rigid].impulse[d] + turn[d];
+  Vector result;
+  for (unsigned int v = 0; v < dim; ++v)
+    result += point.weights[v] * surface.nodes[point.nodes[v]].velocity;
+  return result;
+}
+
+template <int dim>
+double
+StructureWalls<dim>::softness(const Carried &point, const Vector &area) const
+{
+  double result = 0;
+  for (unsigned int v = 0; v < dim; ++v)
+    if (const auto &node = surface.nodes[point.nodes[v]]; node.rigid < 0)
+      for (unsigned int d = 0; d < dim; ++d)
+        result += point.weights[v] * area[d] * area[d] * node.inverse_mass[d];
   return result;
 }
 

@@ -46,9 +46,14 @@ public:
   std::string describe_limit() const;
 
   /// Velocities, pressures and positions at the end of the step; impulses on structures, whose
-  /// velocities are predicted. Collective.
-  void
-  advance(const double time, const double dt, StructureSystem<dim> &structure, TimingTable &timed);
+  /// velocities are predicted.
+  /// @param last_dt of the step before, 0: none [s]
+  /// Collective.
+  void advance(const double          time,
+               const double          last_dt,
+               const double          dt,
+               StructureSystem<dim> &structure,
+               TimingTable          &timed);
   /// Points that left or are crowded go, gaps are filled; structures have moved. Collective.
   void refill(StructureSystem<dim> &structure);
   /// New elements. Collective.
@@ -69,5 +74,8 @@ private:
   MPI_Comm comm;
 
   void generate(const Parameters &body, const Octree<dim> &octree, meshless::Fluid<dim> &fluid);
+  void put_on_structures(const Parameters     &body,
+                         const Octree<dim>    &octree,
+                         meshless::Fluid<dim> &fluid) const;
 };
 } // namespace coracle

@@ -15,13 +15,13 @@ namespace coracle::meshless
 {
 /// Columns of a point's state between steps; all doubles, so that rows migrate and restart as they
 /// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on;
-/// free is 1 at the free surface and in drops.
+/// free is 1 at the free surface and in drops; sliding is 1 on the surface of a structure.
 template <int dim>
 struct FluidLayout
 {
   static constexpr int position = 0, velocity = dim, pressure = 2 * dim, spacing = 2 * dim + 1,
                        id = 2 * dim + 2, walls = 2 * dim + 3, free = 2 * dim + 4,
-                       n_columns = 2 * dim + 5;
+                       sliding = 2 * dim + 5, n_columns = 2 * dim + 6;
 };
 
 /**
@@ -62,7 +62,7 @@ public:
 
   Fluid(const std::string &name, const FluidOptions<dim> &options, const MPI_Comm comm);
 
-  /// One more point of this rank, before the first step.
+  /// One more point of this rank, before the first step. Its row is the last one.
   void
   add_point(const dealii::Point<dim> &position, const Vector &velocity, const std::uint64_t id);
 
@@ -78,8 +78,11 @@ public:
   /// Which point asks for it. Collective.
   std::string describe_limit() const;
 
-  /// One step, without new elements: those come with remesh(). Collective.
-  void advance(const double time, const double dt, TimingTable &timed);
+  /// One step, without new elements: those come with remesh(). Velocities of structures are those
+  /// of the middles of steps; `push_duration` is the time from one middle to the next, in which
+  /// pressure acts on them [s]; 0: dt. Collective.
+  void
+  advance(const double time, const double dt, TimingTable &timed, const double push_duration = 0);
   /// Points that left, or are too near to others, go; gaps get new ones. Before remesh().
   /// Collective.
   void refill();
@@ -87,7 +90,8 @@ public:
   /// Surfaces that the fluid meets, as they are now: before advance() with the velocities that
   /// their bodies would have without the fluid, before refill() and remesh() as they have moved.
   StructureWalls<dim> structures;
-  /// Impulses of the step on rigid bodies, the same on all ranks, and on nodes of `structures`.
+  /// Impulses of the step on rigid bodies, the same on all ranks, and by node of
+  /// `structures.surface`, on those that this rank owns.
   std::vector<typename StructureWalls<dim>::Push> rigid_impulses;
   std::vector<Vector>                             node_impulses;
   /// Points that start in a structure, or nearer to a facet of one than half a spacing, go.
@@ -176,11 +180,24 @@ private:
   void          check_numbers();
   void          new_positions(std::vector<dealii::Point<dim>> &x) const;
   void          add_structure_points();
+  void          carry_points();
   unsigned char faces_at(const dealii::Point<dim> &x) const;
   bool is_structure(const std::size_t row) const { return points.kind[row] == PointKind::wall; }
+  /// A point of the fluid on the surface of a structure.
+  bool is_sliding(const std::size_t row) const { return points.kind[row] == PointKind::sliding; }
+  bool is_held(const std::size_t row, const Vector &normal) const;
+  void slide(const typename StructureWalls<dim>::Pushes &pushes);
+  void stay_on_structures();
+  void put_on_structure(const std::size_t row, const typename StructureSurface<dim>::Place &place);
+  void find_slid_together(std::vector<unsigned char> &taken_out);
+  bool is_along_structure(const unsigned int                     i,
+                          const unsigned int                     j,
+                          const std::vector<dealii::Point<dim>> &x) const;
+  void find_near_structures(const std::vector<dealii::Point<dim>> &x,
+                            std::vector<double>                   &marks) const;
   void find_wall_areas();
-  void move_structures(const double dt, const bool with_pressure);
-  void add_rigid_bodies(double *result, const double *p) const;
+  void move_structures();
+  void add_structures(double *result, const double *p) const;
   void find_inside(const std::vector<dealii::Point<dim>> &x, std::vector<unsigned char> &taken_out);
   void find_flattened(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
   void find_strays(std::vector<unsigned char> &taken_out);
@@ -203,19 +220,24 @@ private:
   std::vector<double> moved_volume, right_side;
   /// Where the pressure is not solved for: drops, or one point of a fluid without a surface.
   std::vector<unsigned char> no_pressure;
+  /// Points beside a facet of the free surface, those of structures too.
+  std::vector<unsigned char> at_surface;
   /// Facets of the free surface, and elements with a point of it, here.
   std::vector<typename Tessellation<dim>::Facet> surface_facets, wall_facets;
   std::vector<unsigned int>                      surface_elements;
   /// a_i of own points and copies [m^(dim-1)].
   std::vector<Vector> surface_area, pushed;
   std::vector<double> surface_pressure, driven;
-  /// The same of structure nodes, all facets beside them; by node.
+  /// The same of points on structures, facets on these; of structure nodes all; by own row.
   std::vector<Vector> wall_area;
-  std::size_t         n_cloud = 0;
-  double              last_dt = 0;
-  Books               energy;
-  std::uint64_t       next_id        = 0;
-  double              current_volume = 0;
+  /// Own points on structures, and the unit normals there; of structure nodes none.
+  std::vector<typename StructureWalls<dim>::Carried> carried;
+  std::vector<Vector>                                carried_normal;
+  std::size_t                                        n_cloud = 0;
+  double                                             last_dt = 0, push_time = 0;
+  Books                                              energy;
+  std::uint64_t                                      next_id        = 0;
+  double                                             current_volume = 0;
   /// Of the old elements at the end of the step.
   std::optional<std::vector<BoundaryFacet<dim>>> moved_boundary;
   /// Steps since points were shared out among ranks; so many of them, or an uneven share, ask for

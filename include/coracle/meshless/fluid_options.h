@@ -51,7 +51,9 @@ struct FluidOptions
   /// never.
   double volume_relaxation = 0;
   /// Share of h that a point may move in a step.
-  double                    largest_move = 0.25;
+  double largest_move = 0.25;
+  /// Do points slide on structures, or move with them?
+  bool                      slips_on_structures = false;
   dealii::Tensor<1, dim>    gravity;
   dealii::BoundingBox<dim>  box;
   std::array<Wall, 2 * dim> walls{};

@@ -14,7 +14,9 @@ enum class PointKind : unsigned char
 {
   fluid,
   /// Face of the box or surface of a structure: bounds the fluid, and is never a free surface.
-  wall
+  wall,
+  /// Moves with the fluid, on the surface of a structure: bounds it, as those.
+  sliding
 };
 
 /**

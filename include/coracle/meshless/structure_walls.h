@@ -2,16 +2,15 @@
 #pragma once
 
 #include <coracle/contact/rows.h>
-#include <coracle/contact/surface.h>
-
-#include <mpi.h>
+#include <coracle/meshless/structure_surface.h>
 
 namespace coracle::meshless
 {
 /**
- * The surfaces of structures and rigid bodies as the fluid meets them: their
- * nodes are points of the fluid that move with the body, without slip, and the
- * fluid's pressure gives them impulses.
+ * The surfaces of structures and rigid bodies as the fluid meets them. Held nodes are points of the
+ * fluid that move with the body: all of them without slip; with it those of edges and corners, and
+ * of sheets. Elsewhere points of the fluid slide on the surface. The fluid's pressure gives
+ * impulses to the nodes that carry its points.
  */
 template <int dim>
 class StructureWalls
@@ -20,15 +19,24 @@ public:
   using Vector  = dealii::Tensor<1, dim>;
   using Vector3 = dealii::Tensor<1, 3>;
 
-  /// A node that this rank owns.
+  /// A held node that this rank owns.
   struct Node
   {
     dealii::Point<dim> position;
     Vector             velocity, inverse_mass;
     std::uint64_t      key;
-    /// Number among the nodes of the published surface, and of the rigid body or -1.
-    unsigned int place;
-    int          rigid;
+    /// Number of the rigid body or -1.
+    int rigid;
+    /// Number in `surface`.
+    unsigned int number;
+  };
+
+  /// A point of the fluid on a surface, by its row there, and the nodes of `surface` that carry it.
+  struct Carried
+  {
+    std::size_t                             row;
+    typename StructureSurface<dim>::Simplex nodes;
+    std::array<double, dim>                 weights;
   };
 
   /// Impulse and its moment about the centre, of a rigid body [N s, N m s].
@@ -38,37 +46,64 @@ public:
     Vector3 moment;
   };
 
+  /// By rigid body, and by node of `surface` for points that slide on deformable ones; the same on
+  /// all ranks.
+  struct Pushes
+  {
+    std::vector<Push>   rigid;
+    std::vector<Vector> node;
+  };
+
   /**
    * Take over what is published now. Collective.
    * @param rigid_of_node by node of the surface, -1: deformable
    */
-  void update(const contact::Surface<dim>                   &surface,
+  void update(const contact::Surface<dim>                   &published,
               const std::vector<int>                        &rigid_of_node,
               const std::vector<contact::RigidUnknown<dim>> &rigid_unknowns,
               const MPI_Comm                                 comm);
 
-  bool empty() const { return facets.empty(); }
+  bool empty() const { return surface.facets.empty(); }
 
   /// Is the point inside a closed body, by the angle that the facets fill as seen from it?
   bool contains(const dealii::Point<dim> &x) const;
   /// Is a facet of a closed body nearer to the point than this [m]?
   bool is_nearer(const dealii::Point<dim> &x, const double reach) const;
-  /// Longest edge of a facet [m].
+  /// Longest edge of a facet between held nodes [m].
   double longest_edge() const;
 
-  /// Sum over ranks of p a and its moment for each rigid body. Collective.
-  std::vector<Push>
-  sum_of_pressures(const double *p, const std::vector<Vector> &area, const MPI_Comm comm) const;
-  /// Velocity of a node that impulses of the bodies bring about [m/s].
-  Vector velocity_of(const unsigned int node, const std::vector<Push> &push) const;
+  /// The nodes that carry a held node.
+  Carried carried(const std::size_t row, const Node &node) const;
 
+  /// Sum over ranks of p a, by row of the fluid, and its moment. Collective.
+  Pushes sum_of_pressures(const double               *p,
+                          const std::vector<Vector>  &area,
+                          const std::vector<Carried> &points,
+                          const MPI_Comm              comm) const;
+  /// Does the impulse of one point change the velocity of others?
+  bool acts_on_others() const { return !rigids.empty() || couples(); }
+  /// What they change of the velocity of a point [m/s].
+  Vector velocity_of(const Carried &point, const Pushes &pushes) const;
+  /// That without pressure [m/s].
+  Vector velocity_of(const Carried &point) const;
+  /// a . M^-1 a of a point of a deformable body, if its nodes were not those of others [m^../kg].
+  double softness(const Carried &point, const Vector &area) const;
+
+  /// Do points slide?
+  bool slip = false;
+  /// How far points look for surfaces [m].
+  double                                  reach = 1;
+  StructureSurface<dim>                   surface;
   std::vector<Node>                       nodes;
   std::vector<contact::RigidUnknown<dim>> rigids;
 
 private:
-  /// A simplex of a facet of any rank.
-  using Simplex = std::array<dealii::Point<dim>, dim>;
-  std::vector<Simplex> facets;
-  dealii::Point<dim>   low, high;
+  /// Are there nodes of deformable bodies that carry several points?
+  bool couples() const { return slip && deforms; }
+
+  dealii::Point<dim> place_of(const Carried &point) const;
+
+  bool               deforms = false;
+  dealii::Point<dim> low, high;
 };
 } // namespace coracle::meshless

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
+TETRAHEDRA = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6))
 FACES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 
 
@@ -103,6 +104,47 @@ def draw_structure(axes, frame, view, snapshot, colours):
     return polygons
 
 
+def cut(frame, place):
+    """Where the plane z = place cuts tetrahedra or hexahedra: polygons, and the cell of each."""
+    cells, owner = frame.cells, np.arange(len(frame.cells))
+    if cells.shape[1] == 8:
+        cells = np.concatenate([cells[:, list(corners)] for corners in TETRAHEDRA])
+        owner = np.tile(owner, len(TETRAHEDRA))
+    height = frame.points[:, 2] - place
+    above = height[cells] > 0
+    polygons, cut_cells = [], []
+    for c in np.flatnonzero(above.any(axis=1) & ~above.all(axis=1)):
+        high, low = cells[c][above[c]], cells[c][~above[c]]
+        # In this order the four crossings of two against two go around.
+        pairs = [(a, b) for k, a in enumerate(high) for b in (low if k % 2 == 0 else low[::-1])]
+        ends = np.array(pairs)
+        share = height[ends[:, 0]] / (height[ends[:, 0]] - height[ends[:, 1]])
+        crossings = frame.points[ends[:, 0]] + share[:, None] * (
+            frame.points[ends[:, 1]] - frame.points[ends[:, 0]]
+        )
+        polygons.append(crossings[:, :2])
+        cut_cells.append(owner[c])
+    return polygons, np.array(cut_cells, dtype=int)
+
+
+def draw_elements(axes, frame, snapshot):
+    """Elements of a meshless fluid, or where a plane cuts them: what lies between points and what does not."""
+    values = values_of(frame.point_data, snapshot["colour"], snapshot.get("scale", 1))
+    if "cut" in snapshot:
+        polygons, cells = cut(frame, snapshot["cut"])
+    else:
+        polygons, cells = frame.points[frame.cells][..., :2], slice(None)
+    collection = PolyCollection(polygons, edgecolor="none", antialiaseds=False, zorder=2)
+    collection.set_array(values[frame.cells].mean(axis=1)[cells])
+    collection.set(cmap=snapshot.get("map", "viridis"), clim=snapshot.get("limits", (None, None)))
+    return axes.add_collection(collection)
+
+
+def draw_cut_structure(axes, frame, snapshot):
+    polygons, _ = cut(frame, snapshot["cut"])
+    axes.add_collection(PolyCollection(polygons, facecolor="#c9cdd2", edgecolor="none", antialiaseds=False, zorder=3))
+
+
 def draw_particles(axes, frame, view, snapshot):
     points, depth = view.project(frame.points)
     values = values_of(frame.point_data, snapshot["colour"], snapshot.get("scale", 1))
@@ -174,8 +216,9 @@ def draw(snapshot, run):
     """One picture with an axis for each time, all with the same colours and view."""
     view = View(snapshot)
     particles, structures = snapshot.get("particles", []), snapshot.get("structures", [])
+    fluids = [name + ".elements" for name in snapshot.get("elements", [])]
     frames = [
-        {name: run.read(name, time) for name in particles + structures}
+        {name: run.read(name, time) for name in particles + fluids + structures}
         for time in snapshot["times"]
     ]
     box = snapshot.get("view") or extent_of([f for frame in frames for f in frame.values()], view)
@@ -189,12 +232,15 @@ def draw(snapshot, run):
         for name in particles:
             scatter = draw_particles(axes, frame[name], view, snapshot)
             scatters.append((axes, scatter, spacing_of(frame[name], 2 if view.flat else 3)))
-        for name in structures:
+        meshes = [draw_elements(axes, frame[name], snapshot) for name in fluids]
+        for name in structures if "cut" in snapshot else []:
+            draw_cut_structure(axes, frame[name], snapshot)
+        for name in structures if "cut" not in snapshot else []:
             polygons.append(draw_structure(axes, frame[name], view, snapshot, {"clim": clim}))
 
     bar = {"ax": grid, "shrink": 0.85, "aspect": 30}
-    if scatters:
-        figure.colorbar(scatters[0][1], label=snapshot.get("label", snapshot["colour"]), **bar)
+    if scatters or meshes:
+        figure.colorbar(scatters[0][1] if scatters else meshes[0], label=snapshot.get("label", snapshot["colour"]), **bar)
     if polygons and "structure colour" in snapshot:
         figure.colorbar(polygons[0], label=snapshot.get("structure label", ""), **bar)
     label_axes(figure, grid, snapshot, view)

@@ -156,9 +156,8 @@ FluidOptions<dim>::declare(Declaration &body)
     {"auto", "slip", "stick"},
     "What the surfaces of structures do to the fluid. slip: it moves along them freely, and "
     "their facets may be larger than the spacing; stick: it moves as they do, and facets "
-    "must be about as large as the spacing; auto: slip in the plane where Viscosity is 0. Sheets, "
-    "and "
-    "edges and corners of bodies, always stick.");
+    "must be about as large as the spacing; auto: slip in the plane where Viscosity is 0 and no "
+    "structure deforms. Sheets, and edges and corners of bodies, always stick.");
   declare_refill(body);
   declare_solver(body);
 }

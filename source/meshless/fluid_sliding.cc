@@ -40,7 +40,7 @@ Fluid<dim>::carry_points()
 /// surface where gravity pulls them off.
 template <int dim>
 bool
-Fluid<dim>::is_held(const std::size_t row, const Vector &normal) const
+Fluid<dim>::stays_on_structure(const std::size_t row, const Vector &normal) const
 {
   return !isolated[row] &&
          !(free_surface[row] && normal * options.gravity > overhang * options.gravity.norm());
@@ -55,7 +55,7 @@ Fluid<dim>::slide(const typename StructureWalls<dim>::Pushes &pushes)
     {
       const std::size_t i      = carried[k].row;
       const Vector     &normal = carried_normal[k];
-      if (i >= n_cloud || !is_held(i, normal))
+      if (i >= n_cloud || !stays_on_structure(i, normal))
         continue;
       const Vector v =
         structures.velocity_of(carried[k]) + structures.velocity_of(carried[k], pushes);

@@ -132,7 +132,7 @@ Fluid<dim>::diffuse(const double dt, const std::vector<Vector> &acceleration)
   unconverged_solves += !system.solve(force, change, options.solver).converged;
   for (std::size_t i = 0; i < points.n_own; ++i)
     for (unsigned int d = 0; d < dim; ++d)
-      if (!is_held(i, d))
+      if (!(held[i] >> d & 1))
         predicted[i][d] = velocity[i][d] + change[i][d] + dt * balanced[i][d];
 }
 
@@ -375,7 +375,8 @@ Fluid<dim>::move(const double dt)
       columns[Layout::sliding][i]  = 0;
     }
   for (std::size_t k = 0; k < carried.size(); ++k)
-    if (const std::size_t i = carried[k].row; i < n_cloud && is_held(i, carried_normal[k]))
+    if (const std::size_t i = carried[k].row;
+        i < n_cloud && stays_on_structure(i, carried_normal[k]))
       columns[Layout::sliding][i] = 1;
 }
 

@@ -5,6 +5,8 @@
 #include <coracle/base/mpi.h>
 #include <coracle/coupling/coupling.h>
 
+#include <cstring>
+
 #include "tests.h"
 
 /// What the tests of the coupling share: a case from its text, and sums over its particles.
@@ -19,6 +21,13 @@ make_coupling(const std::string &text, MPI_Comm comm = MPI_COMM_WORLD)
   ParameterFile file(declaration);
   file.read_text(text);
   return std::make_unique<Coupling<dim>>(file.parameters(), comm);
+}
+
+/// Of two states, as bits.
+inline bool
+same(const double a, const double b)
+{
+  return std::memcmp(&a, &b, sizeof(double)) == 0;
 }
 
 /// Mass, mass times position, momentum of the first body of material points, on all ranks.

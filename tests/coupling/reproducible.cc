@@ -4,8 +4,6 @@
 // hanging nodes, adapted cells and the split and merged particles in them.
 #include "coupling/case.h"
 
-#include <cstring>
-
 using namespace coracle;
 
 const MPI_Comm comm = MPI_COMM_WORLD;
@@ -40,13 +38,6 @@ frame(const std::string &grid)
          " subsection water\n set Model = weakly compressible\n set Sound speed = 30\n end\n"
          " subsection rubber\n set Model = neo-Hookean\n set Density = 1100\n"
          " set Young modulus = 3e5\n set Poisson ratio = 0.3\n end\nend\n";
-}
-
-/// Of two states, as bits.
-bool
-same(const double a, const double b)
-{
-  return std::memcmp(&a, &b, sizeof(double)) == 0;
 }
 
 template <int dim>

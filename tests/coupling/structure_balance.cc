@@ -5,7 +5,6 @@
 // with hanging nodes, thin sheets between, refinement on the way, and ranks without elements.
 #include "case.h"
 
-#include <cstring>
 #include <map>
 
 using namespace coracle;
@@ -69,12 +68,6 @@ const std::string often = " set Interval in steps = 4\n set Largest imbalance = 
                     " end\n subsection Adaptivity\n set Interval in steps = 10\n subsection "
                     "Criteria\n subsection near\n set Kind = contact distance\n"
                     " set Refine nearer than = 0.02\n set Highest level = 1\n end\n end\n end\n";
-
-bool
-same(const double a, const double b)
-{
-  return std::memcmp(&a, &b, sizeof(double)) == 0;
-}
 
 /// Largest difference of positions [m] and, times 1e-3 s, of velocities; and is every bit the same?
 template <int dim>

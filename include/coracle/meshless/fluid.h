@@ -185,7 +185,7 @@ private:
   bool is_structure(const std::size_t row) const { return points.kind[row] == PointKind::wall; }
   /// A point of the fluid on the surface of a structure.
   bool is_sliding(const std::size_t row) const { return points.kind[row] == PointKind::sliding; }
-  bool is_held(const std::size_t row, const Vector &normal) const;
+  bool stays_on_structure(const std::size_t row, const Vector &normal) const;
   void slide(const typename StructureWalls<dim>::Pushes &pushes);
   void stay_on_structures();
   void put_on_structure(const std::size_t row, const typename StructureSurface<dim>::Place &place);

@@ -71,14 +71,16 @@ def draw(curve, runs, case):
         draw_band(axes, band, case)
     for number, reference in enumerate(curve.get("reference", [])):
         draw_reference(axes, reference, case, number)
-    for run in runs:
+    for number, run in enumerate(runs):
         for line in curve["lines"]:
+            if line.get("run", number) != number:
+                continue
             x = evaluate(line.get("x", "{time [s]}"), run.statistics)
             y = evaluate(line["y"], run.statistics) * np.ones_like(x)
             if "mean over" in line:
                 y = moving_mean(x, y, line["mean over"])
             label = line.get("label", "")
-            if len(runs) > 1:
+            if len(runs) > 1 and "run" not in line:
                 label = f"{label}, {run.folder.name}".strip(", ")
             scale = (line.get("x scale", 1), line.get("y scale", 1))
             axes.plot(x * scale[0], y * scale[1], label=label, linewidth=line.get("width", 1.8), zorder=4)

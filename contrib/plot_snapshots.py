@@ -137,6 +137,10 @@ def draw_elements(axes, frame, snapshot):
     collection = PolyCollection(polygons, edgecolor="none", antialiaseds=False, zorder=2)
     collection.set_array(values[frame.cells].mean(axis=1)[cells])
     collection.set(cmap=snapshot.get("map", "viridis"), clim=snapshot.get("limits", (None, None)))
+    regions = frame.cell_data.get("region", np.zeros(0))
+    for region in np.unique(regions[regions > 0]) if "cut" not in snapshot else []:
+        rim = frame.points[edges(frame.cells[regions == region])][..., :2]
+        axes.add_collection(LineCollection(rim, colors="0.9", linewidths=1.1, zorder=4))
     return axes.add_collection(collection)
 
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <coracle/base/mpi.h>
-#include <coracle/coupling/initial_velocity.h>
+#include <coracle/coupling/meshless_points.h>
 #include <coracle/coupling/meshless_system.h>
-#include <coracle/meshless/surface_seeds.h>
 #include <coracle/particles/shape.h>
 #include <coracle/structure/selection.h>
 
@@ -38,54 +37,6 @@ check_company(const Parameters &bodies)
                          "make one body of them, for example with the shape 'indicator'");
     }
 }
-
-/// Is a place of the box on its lower (side 0) or upper face?
-template <int dim>
-bool
-on_face(const meshless::FluidOptions<dim> &options,
-        const dealii::Point<dim>          &x,
-        const unsigned int                 d,
-        const unsigned int                 side)
-{
-  const double face = side == 0 ? options.box.lower_bound(d) : options.box.upper_bound(d);
-  return std::fabs(x[d] - face) < 1e-6 * options.spacing;
-}
-
-/// Points evenly over the box around a shape, from face to face.
-template <int dim>
-class ClosedLattice
-{
-public:
-  ClosedLattice(const dealii::BoundingBox<dim> &box, const double spacing) : box(box)
-  {
-    for (unsigned int d = 0; d < dim; ++d)
-      n[d] = static_cast<std::uint64_t>(std::max(1., std::round(box.side_length(d) / spacing))) + 1;
-  }
-
-  std::uint64_t size() const
-  {
-    std::uint64_t result = 1;
-    for (unsigned int d = 0; d < dim; ++d)
-      result *= n[d];
-    return result;
-  }
-
-  dealii::Point<dim> point(std::uint64_t id) const
-  {
-    dealii::Point<dim> x;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double share = double(id % n[d]) / (n[d] - 1);
-        x[d]               = (1 - share) * box.lower_bound(d) + share * box.upper_bound(d);
-        id /= n[d];
-      }
-    return x;
-  }
-
-private:
-  const dealii::BoundingBox<dim> box;
-  std::array<std::uint64_t, dim> n;
-};
 
 /// Elements reach from node to node of a surface, no farther than alpha allows.
 template <int dim>
@@ -170,6 +121,7 @@ MeshlessSystem<dim>::declare(Declaration &body)
                 "",
                 "m/s^2",
                 "Acceleration besides gravity, one expression for each direction.");
+  declare_regions(body);
 }
 
 template <int dim>
@@ -191,6 +143,7 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
       if (body.choice("Structures") == "auto" && !structure.solids.empty())
         options.slips_on_structures = false;
       set_box(root, octree, options);
+      read_regions(body, options);
       set_periods(body, !structure.empty(), options);
       auto &fluid =
         bodies.emplace_back(body.name(), options, octree.triangulation.get_communicator());
@@ -198,88 +151,14 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
         fluid.body_force = body.function<dim>("Body force", dim);
       if (with_points)
         {
-          generate(body, octree, fluid);
+          generate_points(body, octree, fluid);
           look_at(structure, fluid);
           check_surfaces(body, fluid);
           fluid.clear_structures();
-          put_on_structures(body, octree, fluid);
+          put_points_on_structures(body, octree, fluid);
           fluid.remesh();
         }
     }
-}
-
-template <int dim>
-void
-MeshlessSystem<dim>::generate(const Parameters     &body,
-                              const Octree<dim>    &octree,
-                              meshless::Fluid<dim> &fluid)
-{
-  check_inside_box(body, octree.box());
-  const auto                     shape = read_shape<dim>(body);
-  const dealii::BoundingBox<dim> box   = shape->bounding_box();
-  const InitialVelocity<dim>     velocity(body);
-  const ClosedLattice<dim>       lattice(box, fluid.options.spacing);
-  std::uint64_t                  n = 0;
-  for (std::uint64_t id = 0; id < lattice.size(); ++id)
-    {
-      const dealii::Point<dim> x = lattice.point(id);
-      // Points on the shape's boundary are in.
-      const dealii::Point<dim> inner = x + 1e-9 * (box.center() - x);
-      const int                leaf  = octree.find(x);
-      // On a periodic face there is one point for both ends.
-      bool twice = false;
-      for (unsigned int d = 0; d < dim; ++d)
-        twice |= fluid.period.along(d) && on_face(fluid.options, x, d, 1) &&
-                 on_face(fluid.options, box.get_boundary_points().first, d, 0);
-      if (twice || leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()) ||
-          !shape->contains(inner))
-        continue;
-      fluid.add_point(x, velocity(x), id);
-      ++n;
-    }
-  n                    = mpi::sum(n, octree.triangulation.get_communicator());
-  fluid.counts.created = n;
-  if (n <= dim)
-    throw body.error("Spacing",
-                     "a body has no points",
-                     std::to_string(n) + " points of a lattice of " +
-                       std::to_string(fluid.options.spacing) + " m are in the shape and the box",
-                     "choose a smaller spacing, or move the shape into the grid's box");
-}
-
-// Where the fluid is beside a structure, points slide on it. Their ids follow those of the lattice.
-template <int dim>
-void
-MeshlessSystem<dim>::put_on_structures(const Parameters     &body,
-                                       const Octree<dim>    &octree,
-                                       meshless::Fluid<dim> &fluid) const
-{
-  if (!fluid.structures.slip || fluid.structures.empty())
-    return;
-  const double                   spacing = fluid.options.spacing;
-  const auto                     shape   = read_shape<dim>(body);
-  const dealii::BoundingBox<dim> box     = shape->bounding_box();
-  const auto                     beside  = [&](const meshless::SurfaceSeed<dim> &seed) {
-    return seed.position + 0.05 * spacing * seed.normal;
-  };
-  const auto is_wet = [&](const meshless::SurfaceSeed<dim> &seed) {
-    const dealii::Point<dim> x = beside(seed), inner = x + 1e-9 * (box.center() - x);
-    return fluid.options.box.point_inside(x) && fluid.options.box.point_inside(seed.position) &&
-           shape->contains(inner) && !fluid.structures.contains(x);
-  };
-  const InitialVelocity<dim> velocity(body);
-  std::uint64_t              id = ClosedLattice<dim>(box, spacing).size(), n = 0;
-  for (const auto &seed : meshless::seed<dim>(fluid.structures.surface, spacing, is_wet))
-    {
-      ++id;
-      const int leaf = octree.find(seed.position);
-      if (leaf < 0 || leaf >= static_cast<int>(octree.n_owned_leaves()))
-        continue;
-      fluid.add_point(seed.position, velocity(seed.position), id);
-      fluid.columns[meshless::FluidLayout<dim>::sliding][fluid.n_fluid() - 1] = 1;
-      ++n;
-    }
-  fluid.counts.created += mpi::sum(n, comm);
 }
 
 template <int dim>

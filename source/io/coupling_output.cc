@@ -78,7 +78,7 @@ CouplingOutput<dim>::CouplingOutput(const Parameters     &root,
   for (const auto &body : coupling.points.bodies)
     add_rotation_columns<dim>(statistics, body.name());
   for (const auto &body : coupling.fluids.bodies)
-    FluidOutput<dim>::add_columns(statistics, body.name());
+    FluidOutput<dim>::add_columns(statistics, body);
   statistics.add_column("contact.iterations", "");
   statistics.add_column("contact.residual", "m/s");
   statistics.add_column("contact.worst_violation", "m/s");

@@ -36,15 +36,22 @@ FluidOutput<dim>::write(const double time, const meshless::Fluid<dim> &fluid)
   number.exact   = true;
   const std::vector<Field> fields{scalar_field("pressure", "Pa", fluid.pressure),
                                   scalar_field("free_surface", "1", free)};
-  points.write(time, fluid.n_fluid(), {position, velocity, fields[0], fields[1], number});
+  std::vector<Field>       of_points{position, velocity, fields[0], fields[1], number};
+  const bool               has_regions = !fluid.options.regions.empty();
+  const auto region = as_numbers(fluid.region), of_element = as_numbers(fluid.element_region);
+  if (has_regions)
+    of_points.push_back(scalar_field("region", "1", region));
+  points.write(time, fluid.n_fluid(), of_points);
 
   const auto               &mesh = fluid.mesh;
-  std::vector<double>       n_nodes;
+  std::vector<double>       n_nodes, regions;
   std::vector<unsigned int> cells;
   for (unsigned int e = 0; e < mesh.n_elements(); ++e)
     for (unsigned int s = mesh.first_simplex[e]; s < mesh.first_simplex[e + 1]; ++s)
       {
         n_nodes.push_back(mesh.n_nodes(e));
+        if (has_regions)
+          regions.push_back(of_element[e]);
         cells.insert(cells.end(), mesh.simplex[s].begin(), mesh.simplex[s].end());
       }
   MeshView view;
@@ -52,16 +59,17 @@ FluidOutput<dim>::write(const double time, const meshless::Fluid<dim> &fluid)
   view.position = position;
   view.n_cells  = n_nodes.size();
   view.cells    = cells.data();
-  elements.write(time,
-                 view,
-                 {velocity, fields[0], fields[1]},
-                 {scalar_field("points_of_element", "1", n_nodes)});
+  std::vector<Field> of_cells{scalar_field("points_of_element", "1", n_nodes)};
+  if (has_regions)
+    of_cells.push_back(scalar_field("region", "1", regions));
+  elements.write(time, view, {velocity, fields[0], fields[1]}, of_cells);
 }
 
 template <int dim>
 void
-FluidOutput<dim>::add_columns(Statistics &statistics, const std::string &name)
+FluidOutput<dim>::add_columns(Statistics &statistics, const meshless::Fluid<dim> &fluid)
 {
+  const std::string &name = fluid.name();
   statistics.add_column(name + ".volume", "m^" + std::to_string(dim));
   for (const char *const column : {"volume_drift",
                                    "volume_appeared",
@@ -79,6 +87,17 @@ FluidOutput<dim>::add_columns(Statistics &statistics, const std::string &name)
     statistics.add_column(name + "." + column, "");
   statistics.add_vector(name + ".lowest", "m", dim);
   statistics.add_vector(name + ".highest", "m", dim);
+  if (!fluid.options.regions.empty())
+    {
+      statistics.add_column(name + ".viscosity.iterations", "");
+      statistics.add_column(name + ".viscosity.unconverged", "");
+    }
+  for (const auto &region : fluid.options.regions)
+    {
+      statistics.add_column(name + "." + region.name + ".volume", "m^" + std::to_string(dim));
+      statistics.add_vector(name + "." + region.name + ".centre", "m", dim);
+      statistics.add_vector(name + "." + region.name + ".velocity", "m/s", dim);
+    }
 }
 
 template <int dim>
@@ -118,6 +137,22 @@ FluidOutput<dim>::set_columns(Statistics                 &statistics,
       set("lowest" + axis, mpi::min(lowest, comm));
       set("highest" + axis, mpi::max(highest, comm));
     }
+  if (fluid.options.regions.empty())
+    return;
+  set("viscosity.iterations", fluid.last_viscous_solve.iterations);
+  set("viscosity.unconverged", fluid.unconverged_viscous_solves);
+  const auto regions = fluid.region_summaries();
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    {
+      const std::string &region = fluid.options.regions[k].name;
+      set(region + ".volume", regions[k].volume);
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const std::string axis = std::string(".") + "xyz"[d];
+          set(region + ".centre" + axis, regions[k].centre[d]);
+          set(region + ".velocity" + axis, regions[k].velocity[d]);
+        }
+    }
 }
 
 template <int dim>
@@ -140,8 +175,7 @@ BodyReport<dim>
 FluidOutput<dim>::report(const meshless::Fluid<dim> &fluid)
 {
   const auto summary = fluid.summary();
-  return {
-    fluid.name(), fluid.options.density * summary.volume, summary.centre, summary.velocity, {}};
+  return {fluid.name(), summary.mass, summary.centre, summary.velocity, {}};
 }
 
 template <int dim>
@@ -151,7 +185,7 @@ FluidOutput<dim>::set_probe(const PointProbe<dim>      &probe,
                             Statistics                 &statistics)
 {
   // Drops have no mass of their own, but count.
-  std::vector<double> mass(fluid.volume.begin(), fluid.volume.begin() + fluid.n_fluid());
+  std::vector<double> mass(fluid.mass.begin(), fluid.mass.begin() + fluid.n_fluid());
   for (double &m : mass)
     m = std::max(m * fluid.options.density, 1e-300);
   ParticleView view;

@@ -85,6 +85,23 @@ ElementRules<dim>::volume() const
   return std::accumulate(weight.begin(), weight.end(), 0.);
 }
 
+template <int dim>
+std::vector<double>
+ElementRules<dim>::flatness() const
+{
+  std::vector<double> result(first_point.size() - 1, 0.);
+  for (unsigned int e = 0; e + 1 < first_point.size(); ++e)
+    for (unsigned int q = first_point[e]; q < first_point[e + 1]; ++q)
+      {
+        const std::size_t end     = q + 1 < begin.size() ? begin[q + 1] : gradient.size();
+        double            largest = 0;
+        for (std::size_t k = begin[q]; k < end; ++k)
+          largest = std::max(largest, gradient[k].norm_square());
+        result[e] += weight[q] * largest;
+      }
+  return result;
+}
+
 template class ElementRules<2>;
 template class ElementRules<3>;
 } // namespace coracle::meshless

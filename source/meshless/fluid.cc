@@ -18,6 +18,7 @@ Fluid<dim>::Fluid(const std::string &name, const FluidOptions<dim> &options, con
   , body_name(name)
   , comm(comm)
   , pressure_system(comm)
+  , viscous_system(comm)
 {
   structures.slip  = options.slips_on_structures;
   structures.reach = options.spacing;
@@ -27,8 +28,10 @@ template <int dim>
 void
 Fluid<dim>::add_point(const dealii::Point<dim> &position,
                       const Vector             &velocity,
-                      const std::uint64_t       id)
+                      const std::uint64_t       id,
+                      const unsigned int        region)
 {
+  Assert(region <= options.regions.size(), dealii::ExcMessage("No such region"));
   const std::size_t row = columns.size();
   columns.resize(row + 1);
   const auto   corners = options.box.get_boundary_points();
@@ -56,6 +59,7 @@ Fluid<dim>::add_point(const dealii::Point<dim> &position,
   columns[Layout::id][row]      = id;
   columns[Layout::walls][row]   = on;
   columns[Layout::sliding][row] = 0;
+  columns[Layout::region][row]  = region;
   next_id                       = std::max(next_id, id + 1);
 }
 
@@ -89,6 +93,7 @@ Fluid<dim>::fill_cloud()
   velocity.resize(n);
   pressure.assign(columns[Layout::pressure], columns[Layout::pressure] + n);
   walls.resize(n);
+  region.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     {
       for (unsigned int d = 0; d < dim; ++d)
@@ -102,6 +107,7 @@ Fluid<dim>::fill_cloud()
       const double share = options.surface_alpha / options.tessellation.alpha;
       points.spacing[i] = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
       walls[i]          = columns[Layout::walls][i];
+      region[i]         = columns[Layout::region][i];
       if (columns[Layout::sliding][i] > 0)
         points.kind[i] = PointKind::sliding;
     }
@@ -127,10 +133,12 @@ Fluid<dim>::remesh(const bool may_balance)
   halo.update(points.spacing);
   rules.reinit(points, mesh);
   FluidOperators<dim>(mesh, rules, halo).lumped_volume(volume);
+  find_element_regions();
+  find_masses(rules, volume, mass);
   find_free_surface();
   energy.kinetic = 0;
   for (std::size_t i = 0; i < n_cloud; ++i)
-    energy.kinetic += 0.5 * options.density * volume[i] * velocity[i].norm_square();
+    energy.kinetic += 0.5 * options.density * mass[i] * velocity[i].norm_square();
   if (initial_volume > 0)
     energy.transfer += old_kinetic - energy.kinetic;
   find_volume();
@@ -236,7 +244,7 @@ template <int dim>
 typename Fluid<dim>::Summary
 Fluid<dim>::summary() const
 {
-  std::array<double, 5 + 2 * dim> sums{};
+  std::array<double, 6 + 2 * dim> sums{};
   sums[0] = n_cloud;
   sums[1] = mesh.n_elements();
   for (std::size_t i = 0; i < points.n_own; ++i)
@@ -247,13 +255,14 @@ Fluid<dim>::summary() const
           sums[3] += isolated[i];
         }
       sums[4] += volume[i];
+      sums[5] += mass[i];
       for (unsigned int d = 0; d < dim; ++d)
         {
-          sums[5 + d] += volume[i] * points.position[i][d];
-          sums[5 + dim + d] += volume[i] * velocity[i][d];
+          sums[6 + d] += mass[i] * points.position[i][d];
+          sums[6 + dim + d] += mass[i] * velocity[i][d];
         }
     }
-  std::array<double, 5 + 2 * dim> total{};
+  std::array<double, 6 + 2 * dim> total{};
   MPI_Allreduce(sums.data(), total.data(), total.size(), MPI_DOUBLE, MPI_SUM, comm);
   Summary result;
   result.n_points   = total[0];
@@ -261,10 +270,11 @@ Fluid<dim>::summary() const
   result.n_free     = total[2];
   result.n_isolated = total[3];
   result.volume     = total[4];
-  for (unsigned int d = 0; d < dim && total[4] > 0; ++d)
+  result.mass       = options.density * total[5];
+  for (unsigned int d = 0; d < dim && total[5] > 0; ++d)
     {
-      result.centre[d]   = total[5 + d] / total[4];
-      result.velocity[d] = total[5 + dim + d] / total[4];
+      result.centre[d]   = total[6 + d] / total[5];
+      result.velocity[d] = total[6 + dim + d] / total[5];
     }
   return result;
 }
@@ -316,6 +326,7 @@ Fluid<dim>::serialize(Archive &archive)
   archive.same("pressure_solves", pressure_solves);
   archive.same("pressure_iterations", pressure_iterations);
   archive.same("unconverged_solves", unconverged_solves);
+  archive.same("unconverged_viscous_solves", unconverged_viscous_solves);
 }
 
 template class Fluid<2>;

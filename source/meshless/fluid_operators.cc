@@ -5,10 +5,12 @@ namespace coracle::meshless
 {
 template <int dim>
 void
-FluidOperators<dim>::lumped_volume(std::vector<double> &result) const
+FluidOperators<dim>::lumped_volume(std::vector<double>       &result,
+                                   const std::vector<double> &factor) const
 {
   result.assign(halo.n_own() + halo.n_copies(), 0.);
   rules.for_each(tessellation,
+                 factor,
                  [&](const unsigned int *nodes,
                      const unsigned int  n,
                      const double        weight,
@@ -93,6 +95,32 @@ FluidOperators<dim>::laplacian_diagonal(std::vector<double> &result) const
                      const Vector *gradient) {
                    for (unsigned int i = 0; i < n; ++i)
                      result[nodes[i]] += weight * gradient[i].norm_square();
+                 });
+  halo.sum_to_owners(result);
+}
+
+template <int dim>
+void
+FluidOperators<dim>::viscous_force(const std::vector<Vector> &u,
+                                   const std::vector<double> &viscosity,
+                                   std::vector<Vector>       &result) const
+{
+  result.assign(halo.n_own() + halo.n_copies(), Vector());
+  rules.for_each(tessellation,
+                 viscosity,
+                 [&](const unsigned int *nodes,
+                     const unsigned int  n,
+                     const double        weight,
+                     const double *,
+                     const Vector *gradient) {
+                   if (weight == 0)
+                     return;
+                   dealii::Tensor<2, dim> slope;
+                   for (unsigned int i = 0; i < n; ++i)
+                     slope += outer_product(u[nodes[i]], gradient[i]);
+                   slope += transpose(slope);
+                   for (unsigned int i = 0; i < n; ++i)
+                     result[nodes[i]] += weight * (slope * gradient[i]);
                  });
   halo.sum_to_owners(result);
 }

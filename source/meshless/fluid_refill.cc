@@ -29,8 +29,11 @@ n_faces(const unsigned int walls)
   return n;
 }
 
+} // namespace
+
 /// An edge of an element that is too long; ids as doubles, so that edges travel.
-struct LongEdge
+template <int dim>
+struct Fluid<dim>::LongEdge
 {
   double                      length_square = 0;
   std::array<double, 2>       ids{};
@@ -40,7 +43,6 @@ struct LongEdge
   /// The longest first, ids decide ties, and so does the rank among edges found by several.
   std::array<double, 4> key() const { return {-length_square, ids[0], ids[1], double(rank)}; }
 };
-} // namespace
 
 template <int dim>
 void
@@ -129,9 +131,10 @@ Fluid<dim>::find_corner_twins(std::vector<unsigned char> &taken_out)
 }
 
 /**
- * Of two points too near to each other, that on fewer faces of the box goes, then that inside the
- * fluid, then the younger one; the fluid's outline stays as it is, so that no volume is lost. Nor
- * may a point be so near to a wall that the flat elements between have too large spheres.
+ * Of two points too near to each other, that outside of regions goes, then that on fewer faces of
+ * the box, then that inside the fluid, then the younger one; the fluid's outline stays as it is, so
+ * that no volume is lost. Nor may a point be so near to a wall that the flat elements between have
+ * too large spheres.
  */
 template <int dim>
 void
@@ -140,7 +143,8 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
 {
   std::vector<double> marks(points.size());
   const auto          rank_of = [this](const unsigned int i) {
-    return std::array<double, 3>{is_structure(i) ? dim + 1.
+    return std::array<double, 4>{is_structure(i) ? 2. : double(region[i] > 0),
+                                 is_structure(i) ? dim + 1.
                                                           : double(n_faces(walls[i]) + is_sliding(i)),
                                  double(free_surface[i]),
                                  -double(points.id[i])};
@@ -158,13 +162,14 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
   });
   find_flattened(x, marks);
   find_near_structures(x, marks);
+  find_encroaching(x, marks);
   halo.sum_to_owners(marks);
   std::uint64_t n       = 0;
   const auto    corners = options.box.get_boundary_points();
   for (std::size_t i = 0; i < n_cloud; ++i)
     {
       bool goes = marks[i] > 0;
-      if (!free_surface[i] && !isolated[i])
+      if (!free_surface[i] && !isolated[i] && region[i] == 0)
         for (unsigned int face = 0; face < 2 * dim; ++face)
           {
             const double place = face % 2 == 0 ? corners.first[face / 2] : corners.second[face / 2];
@@ -182,14 +187,10 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
   counts.taken_out += mpi::sum(n, comm);
 }
 
-/**
- * Each element's longest edge, where it is too long, gets a point in its middle with the mean of
- * its ends: what is interpolated linearly, momentum above all, does not change. The longest edges
- * first, and none that shares a point with another one of this step.
- */
+// The longest edge of each element here, where it is too long.
 template <int dim>
-void
-Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
+typename Fluid<dim>::LongEdges
+Fluid<dim>::find_long_edges(const std::vector<dealii::Point<dim>> &x) const
 {
   // Nothing is put into strands and sheets of one element: they tear.
   std::vector<unsigned char> inside(mesh.n_elements(), 0);
@@ -205,8 +206,11 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
     if ((is_structure(i) && at_surface[i] && is_sliding(j)) ||
         (is_structure(j) && at_surface[j] && is_sliding(i)))
       return;
-    const bool on_boundary =
-      (walls[i] & walls[j]) || (free_surface[i] && free_surface[j]) || is_along_structure(i, j, x);
+    // In space a diagonal of a region's cubes at the surface is no edge of the outline.
+    const bool in_region   = region[i] > 0 && region[i] == region[j];
+    const bool on_boundary = (walls[i] & walls[j]) ||
+                             (free_surface[i] && free_surface[j] && !in_region) ||
+                             is_along_structure(i, j, x);
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
     const double length_square = x[i].distance_square(x[j]);
@@ -221,24 +225,51 @@ Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
     if (longest.length_square == 0 || edge.key() < longest.key())
       longest = edge;
   });
-  std::vector<std::array<double, 4>>        here;
-  std::map<std::array<double, 4>, LongEdge> mine;
+  LongEdges result;
   for (const auto &[element, edge] : by_element)
-    if (mine.emplace(edge.key(), edge).second)
-      here.push_back(edge.key());
-  std::set<std::array<double, 4>> all;
+    result.emplace(edge.key(), edge);
+  return result;
+}
+
+/**
+ * Each element's longest edge, where it is too long, gets a point in its middle with the mean of
+ * its ends: what is interpolated linearly, momentum above all, does not change. The longest edges
+ * first, none that shares a point with another one of this step, and none that ends a region there.
+ */
+template <int dim>
+void
+Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
+{
+  const LongEdges mine = find_long_edges(x);
+  // Key and place of each.
+  std::vector<std::array<double, 4 + dim>> here;
+  for (const auto &[key, edge] : mine)
+    {
+      auto      &entry  = here.emplace_back();
+      const auto middle = x[edge.rows[0]] + 0.5 * (x[edge.rows[1]] - x[edge.rows[0]]);
+      std::copy(key.begin(), key.end(), entry.begin());
+      for (unsigned int d = 0; d < dim; ++d)
+        entry[4 + d] = middle[d];
+    }
+  std::set<std::array<double, 4 + dim>> all;
   for (const auto &there : dealii::Utilities::MPI::all_gather(comm, here))
     all.insert(there.begin(), there.end());
+  std::vector<dealii::Point<dim>> places;
+  for (const auto &entry : all)
+    for (unsigned int d = 0; d < dim; ++d)
+      (d == 0 ? places.emplace_back() : places.back())[d] = entry[4 + d];
+  const auto       intrudes = find_intruders(places, x);
   std::set<double> used;
-  for (const auto &key : all)
+  unsigned int     number = 0;
+  for (const auto &entry : all)
     {
-      if (used.count(key[1]) || used.count(key[2]))
+      if (intrudes[number++] || used.count(entry[1]) || used.count(entry[2]))
         continue;
-      used.insert({key[1], key[2]});
+      used.insert({entry[1], entry[2]});
       const std::uint64_t id = next_id++;
       ++counts.inserted;
-      if (key[3] == mpi::rank(comm))
-        insert_between(mine.at(key).rows, x, id);
+      if (entry[3] == mpi::rank(comm))
+        insert_between(mine.at({entry[0], entry[1], entry[2], entry[3]}).rows, x, id);
     }
 }
 
@@ -261,6 +292,7 @@ Fluid<dim>::insert_between(const std::array<unsigned int, 2>     &rows,
   columns[Layout::id][row]       = id;
   columns[Layout::walls][row]    = walls[i] & walls[j];
   columns[Layout::free][row]     = free_surface[i] && free_surface[j];
+  columns[Layout::region][row]   = region_between(i, j);
   columns[Layout::sliding][row]  = 0;
   typename StructureSurface<dim>::Place place;
   if (is_along_structure(i, j, x) &&

@@ -73,9 +73,14 @@ Fluid<dim>::move_elements(const double dt, const unsigned int iteration, TimingT
     scratch[i] = 0.5 * dt * moving[i];
   moved_rules.set_moved(rules, mesh, scratch);
   FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(moved_volume);
+  find_masses(moved_rules, moved_volume, moved_mass);
   find_surface_areas();
   if (iteration == 0)
-    timed("pattern", [&] { pressure_system.reinit(mesh, halo); });
+    timed("pattern", [&] {
+      pressure_system.reinit(mesh, halo);
+      if (!options.regions.empty())
+        viscous_system.reinit(mesh, viscosity, halo);
+    });
 }
 
 template <int dim>
@@ -93,7 +98,9 @@ Fluid<dim>::predict(const double time, const double dt)
   predicted = velocity;
   for (std::size_t i = 0; i < points.n_own; ++i)
     predicted[i] += dt * acceleration[i];
-  if (options.viscosity > 0)
+  if (!options.regions.empty())
+    diffuse_regions(dt, acceleration);
+  else if (options.viscosity > 0)
     diffuse(dt, acceleration);
   halo.update(predicted);
 }
@@ -147,92 +154,6 @@ Fluid<dim>::is_held(const std::size_t row, const unsigned int d) const
   return held;
 }
 
-// On the halfway elements.
-template <int dim>
-typename Fluid<dim>::Vector
-Fluid<dim>::facet_area(const typename Tessellation<dim>::Facet &facet) const
-{
-  std::array<Vector, dim> x;
-  for (unsigned int i = 0; i < dim; ++i)
-    x[i] = points.position[facet[i]] + scratch[facet[i]];
-  if constexpr (dim == 2)
-    return cross_product_2d(x[1] - x[0]);
-  else
-    return 0.5 * cross_product_3d(x[1] - x[0], x[2] - x[0]);
-}
-
-// a_i, a share of each facet beside it: the derivative of the volume by the point's place.
-template <int dim>
-void
-Fluid<dim>::find_surface_areas()
-{
-  surface_area.assign(points.size(), Vector());
-  for (const auto &facet : surface_facets)
-    {
-      const Vector area = facet_area(facet);
-      for (const unsigned int node : facet)
-        surface_area[node] += area / dim;
-    }
-  halo.sum_to_owners(surface_area);
-  find_wall_areas();
-  halo.update(surface_area);
-}
-
-/**
- * At the free surface, the pressure is such that the elements there keep their volume too, and
- * acts on the surface: with E u = (a_i . u_i), B becomes B - E in both equations, and
- * S - E M^-1 B^T - B M^-1 E^T + E M^-1 E^T takes the place of S. The last term is in the matrix.
- */
-template <int dim>
-void
-Fluid<dim>::add_surface_terms(double *result, const double *p)
-{
-  surface_pressure.assign(p, p + points.n_own);
-  halo.update(surface_pressure);
-  gradient.assign(points.size(), Vector());
-  moved_rules.for_each_of(surface_elements,
-                          mesh,
-                          [&](const unsigned int *nodes,
-                              const unsigned int  n,
-                              const double        weight,
-                              const double       *value,
-                              const Vector       *grad) {
-                            Vector slope;
-                            for (unsigned int i = 0; i < n; ++i)
-                              slope += surface_pressure[nodes[i]] * grad[i];
-                            for (unsigned int i = 0; i < n; ++i)
-                              gradient[nodes[i]] += (weight * value[i]) * slope;
-                          });
-  halo.sum_to_owners(gradient);
-  for (std::size_t i = 0; i < points.n_own; ++i)
-    {
-      pushed[i] = Vector();
-      if (no_pressure[i] || !free_surface[i])
-        continue;
-      result[i] -= surface_area[i] * gradient[i] / moved_volume[i];
-      pushed[i] = surface_pressure[i] / moved_volume[i] * surface_area[i];
-    }
-  halo.update(pushed);
-  driven.assign(points.size(), 0.);
-  moved_rules.for_each_of(surface_elements,
-                          mesh,
-                          [&](const unsigned int *nodes,
-                              const unsigned int  n,
-                              const double        weight,
-                              const double       *value,
-                              const Vector       *grad) {
-                            Vector flow;
-                            for (unsigned int i = 0; i < n; ++i)
-                              flow += value[i] * pushed[nodes[i]];
-                            for (unsigned int i = 0; i < n; ++i)
-                              driven[nodes[i]] += weight * (grad[i] * flow);
-                          });
-  halo.sum_to_owners(driven);
-  for (std::size_t i = 0; i < points.n_own; ++i)
-    if (!no_pressure[i])
-      result[i] -= driven[i];
-}
-
 template <int dim>
 void
 Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, TimingTable &timed)
@@ -241,7 +162,11 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
   for (std::size_t i = 0; i < points.size(); ++i)
     scratch[i] = factor * (theta * predicted[i] + (1 - theta) * velocity[i]);
   FluidOperators<dim>(mesh, moved_rules, halo).divergence(scratch, right_side);
-  // The rate at which volume is to change [1/s], little in a step.
+  // The rate at which volume is to change [1/s], little in a step; regions take no part.
+  if (options.regions.empty())
+    swelling_volume = moved_volume;
+  else
+    FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(swelling_volume, outside_regions);
   const double swelling =
     options.volume_relaxation > 0
       ? std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
@@ -253,8 +178,8 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
   for (std::size_t i = 0; i < points.n_own; ++i)
     if (!no_pressure[i])
       {
-        right_side[i] += factor * swelling * moved_volume[i] - surface_area[i] * scratch[i];
-        surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_volume[i];
+        right_side[i] += factor * swelling * swelling_volume[i] - surface_area[i] * scratch[i];
+        surface[i] = (1 + surface_share) * surface_area[i].norm_square() / moved_mass[i];
       }
   for (const auto &point : carried)
     if (const std::size_t i = point.row; !no_pressure[i])
@@ -263,7 +188,9 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
         surface[i] +=
           options.density * push_time / (theta * dt) * structures.softness(point, wall_area[i]);
       }
-  timed("matrix", [&] { pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure); });
+  timed("matrix", [&] {
+    pressure_system.assemble(mesh, moved_rules, surface, 1., no_pressure, relative_lightness);
+  });
   // In space flat elements change so much between iterations that the old one does not fit.
   if (iteration == 0 || dim == 3)
     timed("multigrid", [&] { pressure_system.prepare(options.solver); });
@@ -321,13 +248,17 @@ Fluid<dim>::correct(const double dt)
   FluidOperators<dim>(mesh, moved_rules, halo).gradient(pressure, gradient);
   corrected = predicted;
   for (std::size_t i = 0; i < n_cloud; ++i)
+    if (!isolated[i])
+      {
+        gradient[i] -= pressure[i] * surface_area[i];
+        corrected[i] -= dt / (options.density * moved_mass[i]) * gradient[i];
+      }
+  if (!options.regions.empty())
+    stiffen(dt);
+  for (std::size_t i = 0; i < n_cloud; ++i)
     {
       if (!isolated[i])
-        {
-          gradient[i] -= pressure[i] * surface_area[i];
-          corrected[i] -= dt / (options.density * moved_volume[i]) * gradient[i];
-          set_wall_velocity(i, corrected[i]);
-        }
+        set_wall_velocity(i, corrected[i]);
       moving[i] = options.time_weight * corrected[i] + (1 - options.time_weight) * velocity[i];
     }
   move_structures();
@@ -362,7 +293,7 @@ Fluid<dim>::move(const double dt)
             corrected[i][d] = 0;
         }
       const double stopped =
-        0.5 * options.density * moved_volume[i] * (before - corrected[i].norm_square());
+        0.5 * options.density * moved_mass[i] * (before - corrected[i].norm_square());
       energy.boundary += stopped;
       energy.kinetic -= stopped;
       for (unsigned int d = 0; d < dim; ++d)
@@ -398,19 +329,21 @@ Fluid<dim>::book_step(const double dt)
   double kinetic = 0;
   for (std::size_t i = 0; i < n_cloud; ++i)
     {
-      const double mass  = options.density * moved_volume[i];
+      const double mass  = options.density * moved_mass[i];
       const Vector mean  = 0.5 * (velocity[i] + corrected[i]);
       Vector       force = options.gravity;
       if (body_force)
         for (unsigned int d = 0; d < dim; ++d)
           force[d] += body_force->value(points.position[i] + 0.5 * dt * moving[i], d);
-      const Vector push    = -(isolated[i] ? 0. : dt) * gradient[i];
-      const Vector pressed = isolated[i] ? predicted[i] : predicted[i] - dt / mass * gradient[i];
-      const double work    = dt * mass * (force * moving[i]);
+      const Vector push  = -(isolated[i] ? 0. : dt) * gradient[i];
+      const Vector stiff = stiffened.empty() ? Vector() : stiffened[i];
+      const Vector pressed =
+        isolated[i] ? predicted[i] : predicted[i] - dt / mass * gradient[i] + stiff;
+      const double work = dt * mass * (force * moving[i]);
       energy.external_work += work;
       energy.internal -= push * mean;
       energy.boundary += mass * (pressed - corrected[i]) * mean;
-      energy.damping -= mass * (predicted[i] - velocity[i] - dt * force) * mean;
+      energy.damping -= mass * (predicted[i] - velocity[i] - dt * force + stiff) * mean;
       energy.transfer += work - dt * mass * (force * mean);
       kinetic += 0.5 * mass * (corrected[i].norm_square() - velocity[i].norm_square());
     }

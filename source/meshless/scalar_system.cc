@@ -84,7 +84,8 @@ ScalarSystem<dim>::assemble(const Tessellation<dim>          &tessellation,
                             const ElementRules<dim>          &rules,
                             const std::vector<double>        &mass,
                             const double                      b,
-                            const std::vector<unsigned char> &fixed)
+                            const std::vector<unsigned char> &fixed,
+                            const std::vector<double>        &share)
 {
   matrix = 0;
   fixed_rows.assign(fixed.begin(), fixed.begin() + owned.n_elements());
@@ -92,6 +93,7 @@ ScalarSystem<dim>::assemble(const Tessellation<dim>          &tessellation,
   std::vector<double>                          values;
   std::vector<dealii::types::global_dof_index> columns;
   rules.for_each(tessellation,
+                 share,
                  [&](const unsigned int *nodes,
                      const unsigned int  n,
                      const double        weight,

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A cube in meshless water floats at Archimedes' draught, also where it has a tenth of the water's density;
-one that falls in dives, comes up, and neither makes nor takes water or energy; also in space."""
+one that falls in dives, comes up, and neither makes nor takes water or energy; also in space. As fluid of a high
+viscosity it does the same and keeps its volume."""
+import shutil
+
 from run_case import Test
 
 test = Test()
@@ -34,4 +37,42 @@ test.band("space: rise over the draught's height, in spacings", (max(heights) - 
 test.band("space: fall below it, in spacings", (min(heights) - 0.4) / 0.04, -0.75, 0.3)
 test.band("space: drift of the water's volume", max(map(abs, result["water.volume_drift"])), 0, 0.02)
 test.band("space: solutions that did not converge", result["water.pressure.unconverged"][-1], 0, 0)
+
+# As fluid of a high viscosity it falls as the rigid body does and keeps its size; on two ranks, and after a restart, alike.
+solid = {"Bodies/water/Spacing": "40 mm", "End time": "0.7", "Checkpoint/Interval in steps": 20,
+         "Checkpoint/Number kept": 100}
+viscous = test.run("falling_cube/viscous.prm", solid)
+test.check("viscous: the verdict is OK", "verdict: OK" in viscous.text)
+test.band("viscous: lowest over that of the rigid body, in spacings",
+          (min(viscous["water.cube.centre.y [m]"]) - min(one["cube.centre.y [m]"])) / 0.04, -0.25, 0.25)
+volumes = [volume / 0.04 - 1 for volume in viscous["water.cube.volume [m^2]"]]
+test.band("viscous: change of its volume", max(map(abs, volumes)), 0, 0.005)
+test.band("viscous: solutions that did not converge",
+          viscous["water.viscosity.unconverged"][-1] + viscous["water.pressure.unconverged"][-1], 0, 0)
+across = test.run("falling_cube/viscous.prm", solid, ranks=2)
+test.agree("viscous: height on 1 and 2 ranks", viscous["water.cube.centre.y [m]"][-1],
+           across["water.cube.centre.y [m]"][-1], 1e-7)
+whole = (viscous.directory / "statistics.csv").read_bytes()
+for checkpoint in sorted((viscous.directory / "checkpoints").glob("step_*"))[1:]:
+    shutil.rmtree(checkpoint)
+rest = test.run("falling_cube/viscous.prm", solid, options=("--restart",), directory=viscous.directory)
+test.check("viscous: it was continued", "step 20," in rest.text)
+test.check("viscous: continued, the statistics are the same",
+           (viscous.directory / "statistics.csv").read_bytes() == whole)
+
+deep = test.run("falling_cube/viscous_space.prm", {"Output/Particle format": "none", "End time": "0.35"})
+test.check("viscous in space: the verdict is OK", "verdict: OK" in deep.text)
+test.band("viscous in space: fallen", 0.6 - deep["water.cube.centre.y [m]"][-1], 0.24, 0.3)
+volumes = [volume / 0.008 - 1 for volume in deep["water.cube.volume [m^3]"]]
+test.band("viscous in space: change of its volume", max(map(abs, volumes)), 0, 0.005)
+test.band("viscous in space: solutions that did not converge",
+          deep["water.viscosity.unconverged"][-1] + deep["water.pressure.unconverged"][-1], 0, 0)
+
+# What a user may get wrong.
+for entry, value, message in (("Regions/cube/Density", "-500", "is not positive"),
+                              ("Regions/cube/Viscocity", "1e5", "did you mean 'Viscosity'?"),
+                              ("Regions/cube/Upper corner", "0.7, 1.9", "a body lies outside the box"),
+                              ("Structures", "slip", "does not slip on structures")):
+    refused = test.run("falling_cube/viscous.prm", {f"Bodies/water/{entry}": value}, options=("--check",), exit_code=2)
+    test.check(f"viscous: {entry} = {value} is refused", message in refused.text)
 test.finish()

@@ -34,9 +34,26 @@ box(const unsigned int n)
   return options;
 }
 
+/// Region of a place.
+template <int dim>
+using Regions = std::function<unsigned int(const dealii::Point<dim> &)>;
+
+/// Is a place on the rim of a region, along axes?
+template <int dim>
+bool
+on_rim(const Regions<dim> &region, const dealii::Point<dim> &x, const double spacing)
+{
+  for (unsigned int d = 0; region && d < dim; ++d)
+    for (const double way : {-spacing, spacing})
+      if (auto y = x; y[d] += way, region(x) > 0 && region(y) != region(x))
+        return true;
+  return false;
+}
+
 /**
- * Points of a lattice from `lower` to `upper`, numbers of intervals `n`, those inside displaced at
- * random by a share of the spacing; each rank takes every so many-th.
+ * Points of a lattice from `lower` to `upper`, numbers of intervals `n`, those inside, and not on
+ * the rim of a region, displaced at random by a share of the spacing; each rank takes every so
+ * many-th.
  */
 template <int dim, typename Velocity>
 void
@@ -45,7 +62,8 @@ fill(Fluid<dim>                          &fluid,
      const dealii::Point<dim>            &upper,
      const std::array<unsigned int, dim> &n,
      const double                         share,
-     const Velocity                      &velocity)
+     const Velocity                      &velocity,
+     const Regions<dim>                  &region = {})
 {
   std::mt19937_64 engine(1);
   unsigned int    n_points = 1;
@@ -61,6 +79,8 @@ fill(Fluid<dim>                          &fluid,
           x[d]                 = lower[d] + (upper[d] - lower[d]) * i / n[d];
           inside &= i > 0 && i < n[d];
         }
+      const unsigned int of = region ? region(x) : 0;
+      inside &= !on_rim(region, x, fluid.options.spacing);
       for (unsigned int d = 0; d < dim; ++d)
         {
           const double random = std::uniform_real_distribution<>(-share, share)(engine);
@@ -68,7 +88,7 @@ fill(Fluid<dim>                          &fluid,
             x[d] += random * fluid.options.spacing;
         }
       if (id % mpi::n_ranks(comm) == mpi::rank(comm))
-        fluid.add_point(x, velocity(x), id);
+        fluid.add_point(x, velocity(x), id, of);
     }
   fluid.remesh();
 }

@@ -72,10 +72,5 @@ private:
   void push(StructureSystem<dim> &structure, const meshless::Fluid<dim> &fluid) const;
 
   MPI_Comm comm;
-
-  void generate(const Parameters &body, const Octree<dim> &octree, meshless::Fluid<dim> &fluid);
-  void put_on_structures(const Parameters     &body,
-                         const Octree<dim>    &octree,
-                         meshless::Fluid<dim> &fluid) const;
 };
 } // namespace coracle

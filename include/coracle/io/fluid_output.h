@@ -23,7 +23,7 @@ public:
 
   void write(const double time, const meshless::Fluid<dim> &fluid);
 
-  static void add_columns(Statistics &statistics, const std::string &name);
+  static void add_columns(Statistics &statistics, const meshless::Fluid<dim> &fluid);
   static void set_columns(Statistics &statistics, const meshless::Fluid<dim> &fluid, MPI_Comm comm);
 
   static void add_energies(const meshless::Fluid<dim> &fluid, MPI_Comm comm, EnergyBooks &energies);

@@ -35,12 +35,22 @@ public:
   template <typename Action>
   void for_each(const Tessellation<dim> &tessellation, const Action &action) const
   {
+    for_each(tessellation, {}, action);
+  }
+
+  /// The same with weights times a factor of the element; no factors: 1.
+  template <typename Action>
+  void for_each(const Tessellation<dim>   &tessellation,
+                const std::vector<double> &factor,
+                const Action              &action) const
+  {
     for (unsigned int e = 0; e < tessellation.n_elements(); ++e)
       {
         const unsigned int  n     = tessellation.n_nodes(e);
         const unsigned int *nodes = tessellation.node.data() + tessellation.first_node[e];
+        const double        times = factor.empty() ? 1. : factor[e];
         for (unsigned int q = first_point[e]; q < first_point[e + 1]; ++q)
-          action(nodes, n, weight[q], value.data() + begin[q], gradient.data() + begin[q]);
+          action(nodes, n, times * weight[q], value.data() + begin[q], gradient.data() + begin[q]);
       }
   }
 
@@ -61,6 +71,9 @@ public:
 
   /// Of all elements here [m^dim].
   double volume() const;
+
+  /// By element, integral of the largest |grad N_i|^2 [m^(dim-2)]: large where it is flat.
+  std::vector<double> flatness() const;
 
 private:
   /// By element.

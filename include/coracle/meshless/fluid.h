@@ -7,21 +7,24 @@
 #include <coracle/meshless/fluid_operators.h>
 #include <coracle/meshless/fluid_options.h>
 #include <coracle/meshless/structure_walls.h>
+#include <coracle/meshless/viscous_system.h>
 #include <coracle/meshless/volume_change.h>
 
+#include <map>
 #include <optional>
 
 namespace coracle::meshless
 {
 /// Columns of a point's state between steps; all doubles, so that rows migrate and restart as they
 /// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on;
-/// free is 1 at the free surface and in drops; sliding is 1 on the surface of a structure.
+/// free is 1 at the free surface and in drops; sliding is 1 on the surface of a structure; region
+/// is that of FluidOptions, and stays.
 template <int dim>
 struct FluidLayout
 {
   static constexpr int position = 0, velocity = dim, pressure = 2 * dim, spacing = 2 * dim + 1,
                        id = 2 * dim + 2, walls = 2 * dim + 3, free = 2 * dim + 4,
-                       sliding = 2 * dim + 5, n_columns = 2 * dim + 6;
+                       sliding = 2 * dim + 5, region = 2 * dim + 6, n_columns = 2 * dim + 7;
 };
 
 /**
@@ -44,6 +47,9 @@ struct FluidLayout
  *   M U^1 = M U* - (dt / rho) B^T P
  *   X^1 = X^0 + dt (theta U^1 + (1 - theta) U^0).
  *
+ * Regions of it are other fluids, of their own density and viscosity: M, S and K have those of the
+ * elements, and K is that of the symmetric gradient (doc/theory.md).
+ *
  * with r = M^-1 B^T P / rho of the pressure known so far (of the step before, then of
  * the iteration before). U* is left free at walls, so that a linear pressure is exact; the walls'
  * condition is that of the pressure equation, and is set in U^1. Elements move
@@ -63,8 +69,10 @@ public:
   Fluid(const std::string &name, const FluidOptions<dim> &options, const MPI_Comm comm);
 
   /// One more point of this rank, before the first step. Its row is the last one.
-  void
-  add_point(const dealii::Point<dim> &position, const Vector &velocity, const std::uint64_t id);
+  void add_point(const dealii::Point<dim> &position,
+                 const Vector             &velocity,
+                 const std::uint64_t       id,
+                 const unsigned int        region = 0);
 
   /**
    * Points go to their ranks, elements are found. After points were added, loaded or moved.
@@ -122,11 +130,14 @@ public:
   {
     std::uint64_t      n_points = 0, n_elements = 0, n_free = 0, n_isolated = 0;
     double             volume = 0; ///< [m^dim]
+    double             mass   = 0; ///< [kg], in the plane per metre
     dealii::Point<dim> centre;     ///< of mass
     Vector             velocity;   ///< of the centre
   };
   /// Collective.
   Summary summary() const;
+  /// Of the elements of each region: volume, mass, centre and velocity. Collective.
+  std::vector<Summary> region_summaries() const;
 
   /// Since the start, on all ranks.
   struct Counts
@@ -137,9 +148,11 @@ public:
   /// Volume at the start, and what appeared and disappeared with new elements so far [m^dim].
   double      initial_volume = 0, volume_appeared = 0, volume_disappeared = 0;
   Counts      counts;
-  SolveReport last_pressure_solve;
+  SolveReport last_pressure_solve, last_viscous_solve;
   /// Over all solves so far.
   std::uint64_t pressure_solves = 0, pressure_iterations = 0, unconverged_solves = 0;
+  /// Of those where regions make viscosity vary.
+  std::uint64_t unconverged_viscous_solves = 0;
 
   // The state between steps: own points, then for all but columns their copies.
   Columns                    columns;
@@ -149,8 +162,12 @@ public:
   std::vector<Vector>        velocity;
   std::vector<double>        pressure;
   std::vector<unsigned char> walls, free_surface, isolated;
-  /// Lumped, of own points [m^dim].
-  std::vector<double> volume;
+  /// By point; nodes of structures have none, which is any.
+  std::vector<unsigned char> region;
+  /// By element: that of all its points, or 0. Empty if there are no regions.
+  std::vector<unsigned char> element_region;
+  /// Lumped, of own points, and mass over the fluid's density [m^dim].
+  std::vector<double> volume, mass;
   /// Acceleration besides gravity, or none.
   std::shared_ptr<dealii::Function<dim>> body_force;
   const FluidOptions<dim>                options;
@@ -165,10 +182,18 @@ private:
   void         move_elements(const double dt, const unsigned int iteration, TimingTable &timed);
   void         predict(const double time, const double dt);
   void         diffuse(const double dt, const std::vector<Vector> &acceleration);
+  void         diffuse_regions(const double dt, const std::vector<Vector> &acceleration);
+  void         stiffen(const double dt);
   /// Whether component d of a point's velocity is given by a wall, a structure or free flight.
   bool          is_held(const std::size_t row, const unsigned int d) const;
+  void          find_element_regions();
+  void          find_masses(const ElementRules<dim>   &of,
+                            const std::vector<double> &volumes,
+                            std::vector<double>       &masses) const;
+  unsigned char region_between(const unsigned int i, const unsigned int j) const;
   Vector        facet_area(const typename Tessellation<dim>::Facet &facet) const;
   void          find_surface_areas();
+  void          fit_surface_areas();
   void          add_surface_terms(double *result, const double *p);
   void          solve_pressure(const double dt, const unsigned int iteration, TimingTable &timed);
   void          correct(const double dt);
@@ -200,14 +225,22 @@ private:
   void add_structures(double *result, const double *p) const;
   void find_inside(const std::vector<dealii::Point<dim>> &x, std::vector<unsigned char> &taken_out);
   void find_flattened(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
-  void find_strays(std::vector<unsigned char> &taken_out);
-  void find_corner_twins(std::vector<unsigned char> &taken_out);
-  void find_crowded(const std::vector<dealii::Point<dim>> &x,
-                    std::vector<unsigned char>            &taken_out);
-  void insert(const std::vector<dealii::Point<dim>> &x);
-  void insert_between(const std::array<unsigned int, 2>     &rows,
-                      const std::vector<dealii::Point<dim>> &x,
-                      const std::uint64_t                    id);
+  void find_encroaching(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
+  /// By place, the same on all ranks: whether a point there would end an element of a region.
+  std::vector<unsigned char> find_intruders(const std::vector<dealii::Point<dim>> &places,
+                                            const std::vector<dealii::Point<dim>> &x) const;
+  void                       find_strays(std::vector<unsigned char> &taken_out);
+  void                       find_corner_twins(std::vector<unsigned char> &taken_out);
+  void                       find_crowded(const std::vector<dealii::Point<dim>> &x,
+                                          std::vector<unsigned char>            &taken_out);
+  /// An edge of an element that is too long, by its key.
+  struct LongEdge;
+  using LongEdges = std::map<std::array<double, 4>, LongEdge>;
+  LongEdges find_long_edges(const std::vector<dealii::Point<dim>> &x) const;
+  void      insert(const std::vector<dealii::Point<dim>> &x);
+  void      insert_between(const std::array<unsigned int, 2>     &rows,
+                           const std::vector<dealii::Point<dim>> &x,
+                           const std::uint64_t                    id);
 
   static constexpr unsigned int steps_between_balances = 50;
 
@@ -215,9 +248,18 @@ private:
   MPI_Comm          comm;
   ElementRules<dim> rules, moved_rules;
   ScalarSystem<dim> pressure_system;
+  /// Where regions make viscosity vary.
+  ViscousSystem<dim> viscous_system;
+  /// With regions, of own points: the pressure's force that the viscous solution knew over dt [N],
+  /// and what of the velocity after the pressure it changes.
+  std::vector<Vector>        known_force, stiffened;
+  std::vector<unsigned char> held_directions;
+  /// By element, empty without regions: density over the fluid's and its inverse, viscosity [Pa s],
+  /// and whether it is outside of regions.
+  std::vector<double> relative_density, relative_lightness, viscosity, outside_regions;
   /// Of the step: U*, U^1 and the velocity that moves, on own points and copies.
   std::vector<Vector> predicted, corrected, moving, gradient, scratch;
-  std::vector<double> moved_volume, right_side;
+  std::vector<double> moved_volume, moved_mass, swelling_volume, right_side;
   /// Where the pressure is not solved for: drops, or one point of a fluid without a surface.
   std::vector<unsigned char> no_pressure;
   /// Points beside a facet of the free surface, those of structures too.

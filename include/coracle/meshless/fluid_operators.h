@@ -25,8 +25,8 @@ public:
     : tessellation(tessellation), rules(rules), halo(halo)
   {}
 
-  /// m_i = integral of N_i [m^dim].
-  void lumped_volume(std::vector<double> &result) const;
+  /// m_i = integral of N_i [m^dim], times a factor of each element if there are any.
+  void lumped_volume(std::vector<double> &result, const std::vector<double> &factor = {}) const;
   /// integral of N_i grad p, B^T p of Eq. 31 [p m^(dim-1)].
   void gradient(const std::vector<double> &p, std::vector<Vector> &result) const;
   /// integral of grad N_i . u, B u of Eq. 29 [u m^(dim-1)].
@@ -35,6 +35,11 @@ public:
   void laplacian(const std::vector<Vector> &u, std::vector<Vector> &result) const;
   /// integral of grad N_i . grad N_i [m^(dim-2)].
   void laplacian_diagonal(std::vector<double> &result) const;
+  /// integral of mu (grad u + grad u^T) grad N_i, mu by element [Pa s u m^(dim-2)]; 0 where u is a
+  /// rigid motion.
+  void viscous_force(const std::vector<Vector> &u,
+                     const std::vector<double> &viscosity,
+                     std::vector<Vector>       &result) const;
 
 private:
   const Tessellation<dim> &tessellation;

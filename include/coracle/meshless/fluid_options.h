@@ -31,6 +31,14 @@ struct RefillOptions
   double longest_boundary_edge = 1.5, longest_edge = 1.7;
 };
 
+/// A part of the fluid that is another one: what its points have.
+struct FluidRegion
+{
+  std::string name;
+  double      density   = 1000; ///< [kg/m^3]
+  double      viscosity = 0;    ///< dynamic [Pa s]
+};
+
 /// The meshless fluid of a body, as its section of the parameter file describes it.
 template <int dim>
 struct FluidOptions
@@ -38,6 +46,8 @@ struct FluidOptions
   double density   = 1000; ///< [kg/m^3]
   double viscosity = 0;    ///< dynamic [Pa s]
   double spacing   = 0;    ///< h of points [m]
+  /// Region k of a point or element is number k - 1 here, 0 is the fluid outside of them.
+  std::vector<FluidRegion> regions;
   /// As alpha, for elements whose points were all at the free surface in the step before.
   double              surface_alpha = 0.85;
   TessellationOptions tessellation;

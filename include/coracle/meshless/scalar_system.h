@@ -53,12 +53,14 @@ public:
    * @param mass  a M, by own point; empty: none. Any diagonal part will do.
    * @param b     factor of S
    * @param fixed by point and copy: unknowns that are zero
+   * @param share of S that an element has, by element; empty: 1
    */
   void assemble(const Tessellation<dim>          &tessellation,
                 const ElementRules<dim>          &rules,
                 const std::vector<double>        &mass,
                 const double                      b,
-                const std::vector<unsigned char> &fixed);
+                const std::vector<unsigned char> &fixed,
+                const std::vector<double>        &share = {});
 
   /// The preconditioner for the matrix as it is now; it may serve later matrices that differ
   /// little.

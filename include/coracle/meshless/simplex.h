@@ -75,6 +75,21 @@ normal_of(const std::array<dealii::Point<3>, 3> &x)
   return cross_product_3d(x[1] - x[0], x[2] - x[0]) / 2.;
 }
 
+/// The centre of the circle or sphere through the corners.
+template <int dim>
+dealii::Point<dim>
+sphere_center(const std::array<dealii::Point<dim>, dim + 1> &x)
+{
+  dealii::Tensor<2, dim> edges;
+  dealii::Tensor<1, dim> half_squares;
+  for (unsigned int i = 0; i < dim; ++i)
+    {
+      edges[i]        = x[i + 1] - x[0];
+      half_squares[i] = edges[i].norm_square() / 2.;
+    }
+  return x[0] + invert(edges) * half_squares;
+}
+
 /// The point of the facet's plane that is equally far from its nodes.
 inline dealii::Point<2>
 center_of(const std::array<dealii::Point<2>, 2> &x)

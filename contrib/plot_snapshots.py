@@ -127,6 +127,18 @@ def cut(frame, place):
     return polygons, np.array(cut_cells, dtype=int)
 
 
+def draw_regions(axes, frame, cut_elements):
+    """Rims of a fluid's regions; where a plane cuts them they are as structures."""
+    regions = frame.cell_data.get("region", np.zeros(0))
+    for region in np.unique(regions[regions > 0]):
+        if cut_elements is None:
+            rim = frame.points[edges(frame.cells[regions == region])][..., :2]
+            axes.add_collection(LineCollection(rim, colors="0.9", linewidths=1.1, zorder=4))
+        else:
+            inside = [polygon for polygon, cell in zip(*cut_elements) if regions[cell] == region]
+            axes.add_collection(PolyCollection(inside, facecolor="#c9cdd2", edgecolor="none", antialiaseds=False, zorder=3))
+
+
 def draw_elements(axes, frame, snapshot):
     """Elements of a meshless fluid, or where a plane cuts them: what lies between points and what does not."""
     values = values_of(frame.point_data, snapshot["colour"], snapshot.get("scale", 1))
@@ -137,10 +149,7 @@ def draw_elements(axes, frame, snapshot):
     collection = PolyCollection(polygons, edgecolor="none", antialiaseds=False, zorder=2)
     collection.set_array(values[frame.cells].mean(axis=1)[cells])
     collection.set(cmap=snapshot.get("map", "viridis"), clim=snapshot.get("limits", (None, None)))
-    regions = frame.cell_data.get("region", np.zeros(0))
-    for region in np.unique(regions[regions > 0]) if "cut" not in snapshot else []:
-        rim = frame.points[edges(frame.cells[regions == region])][..., :2]
-        axes.add_collection(LineCollection(rim, colors="0.9", linewidths=1.1, zorder=4))
+    draw_regions(axes, frame, (polygons, cells) if "cut" in snapshot else None)
     return axes.add_collection(collection)
 
 

@@ -47,14 +47,14 @@ struct FluidLayout
  *   M U^1 = M U* - (dt / rho) B^T P
  *   X^1 = X^0 + dt (theta U^1 + (1 - theta) U^0).
  *
- * Regions of it are other fluids, of their own density and viscosity: M, S and K have those of the
- * elements, and K is that of the symmetric gradient (doc/theory.md).
- *
  * with r = M^-1 B^T P / rho of the pressure known so far (of the step before, then of
  * the iteration before). U* is left free at walls, so that a linear pressure is exact; the walls'
  * condition is that of the pressure equation, and is set in U^1. Elements move
  * by a velocity without divergence on the halfway elements, which keeps areas
  * exactly in the plane, and volumes to third order of the step in space.
+ *
+ * Regions of it are other fluids, of their own density and viscosity: M, S and K have those of the
+ * elements, and K is that of the symmetric gradient (doc/theory.md).
  *
  * Source: Del Pin, Idelsohn, Onate & Calvo (2003); Codina (2001), J. Comput.
  * Phys. 170: the difference of S and B M^-1 B^T keeps the pressure stable.

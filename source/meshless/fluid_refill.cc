@@ -143,7 +143,7 @@ Fluid<dim>::find_crowded(const std::vector<dealii::Point<dim>> &x,
 {
   std::vector<double> marks(points.size());
   const auto          rank_of = [this](const unsigned int i) {
-    return std::array<double, 4>{is_structure(i) ? 2. : double(region[i] > 0),
+    return std::array<double, 4>{double(region[i] > 0),
                                  is_structure(i) ? dim + 1.
                                                           : double(n_faces(walls[i]) + is_sliding(i)),
                                  double(free_surface[i]),
@@ -241,24 +241,29 @@ void
 Fluid<dim>::insert(const std::vector<dealii::Point<dim>> &x)
 {
   const LongEdges mine = find_long_edges(x);
-  // Key and place of each.
-  std::vector<std::array<double, 4 + dim>> here;
+  // Key, place and region of each.
+  std::vector<std::array<double, 5 + dim>> here;
   for (const auto &[key, edge] : mine)
     {
-      auto      &entry  = here.emplace_back();
-      const auto middle = x[edge.rows[0]] + 0.5 * (x[edge.rows[1]] - x[edge.rows[0]]);
+      auto &entry        = here.emplace_back();
+      const auto &[i, j] = edge.rows;
       std::copy(key.begin(), key.end(), entry.begin());
       for (unsigned int d = 0; d < dim; ++d)
-        entry[4 + d] = middle[d];
+        entry[4 + d] = 0.5 * (x[i][d] + x[j][d]);
+      entry[4 + dim] = region_between(i, j);
     }
-  std::set<std::array<double, 4 + dim>> all;
+  std::set<std::array<double, 5 + dim>> all;
   for (const auto &there : dealii::Utilities::MPI::all_gather(comm, here))
     all.insert(there.begin(), there.end());
-  std::vector<dealii::Point<dim>> places;
+  std::vector<NewPoint> new_points;
   for (const auto &entry : all)
-    for (unsigned int d = 0; d < dim; ++d)
-      (d == 0 ? places.emplace_back() : places.back())[d] = entry[4 + d];
-  const auto       intrudes = find_intruders(places, x);
+    {
+      auto &point = new_points.emplace_back();
+      for (unsigned int d = 0; d < dim; ++d)
+        point.position[d] = entry[4 + d];
+      point.region = entry[4 + dim];
+    }
+  const auto       intrudes = find_intruders(new_points, x);
   std::set<double> used;
   unsigned int     number = 0;
   for (const auto &entry : all)

@@ -231,14 +231,17 @@ Fluid<dim>::find_encroaching(const std::vector<dealii::Point<dim>> &x,
     }
 }
 
-// Those in the sphere of such an element, or so near to it that they would soon be.
+// Those in the sphere of an element of a region that is not theirs, or so near to it that they
+// would soon be.
 template <int dim>
 std::vector<unsigned char>
-Fluid<dim>::find_intruders(const std::vector<dealii::Point<dim>> &places,
+Fluid<dim>::find_intruders(const std::vector<NewPoint>           &new_points,
                            const std::vector<dealii::Point<dim>> &x) const
 {
-  std::vector<unsigned char> result(places.size());
-  for (unsigned int e = 0; e < element_region.size() && !places.empty(); ++e)
+  std::vector<unsigned char> result(new_points.size());
+  if (options.regions.empty() || new_points.empty())
+    return result;
+  for (unsigned int e = 0; e < element_region.size(); ++e)
     {
       if (element_region[e] == 0 || mesh.first_simplex[e] == mesh.first_simplex[e + 1])
         continue;
@@ -249,8 +252,9 @@ Fluid<dim>::find_intruders(const std::vector<dealii::Point<dim>> &places,
         continue;
       const auto   center = sphere_center<dim>(corners);
       const double reach  = std::pow(keep_off_sphere, 2) * center.distance_square(corners[0]);
-      for (std::size_t k = 0; k < places.size(); ++k)
-        result[k] |= period.nearest(places[k] - center).norm_square() < reach;
+      for (std::size_t k = 0; k < new_points.size(); ++k)
+        result[k] |= new_points[k].region != element_region[e] &&
+                     period.nearest(new_points[k].position - center).norm_square() < reach;
     }
   for (const auto &there : dealii::Utilities::MPI::all_gather(comm, result))
     for (std::size_t k = 0; k < result.size(); ++k)

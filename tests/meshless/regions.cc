@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Regions of a meshless fluid: layers of different density and viscosity at rest have their exact
 // pressure; a blob a thousand million times as viscous as water turns as a rigid body and keeps its
-// shape, and falls as a stone does; two layers in a channel have the exact velocities; a blob that
-// dips into water does so on any number of ranks alike.
+// shape, and falls as a stone does; two layers in a channel have the exact velocities; a region
+// that is drawn out gets points of its own; a blob that dips into water does so on any number of
+// ranks alike.
 #include <coracle/base/mpi.h>
 
 #include "tank.h"
@@ -189,6 +190,28 @@ channel()
   deallog << "two layers in a channel to 1 %: " << (worst < 0.01) << std::endl;
 }
 
+/// All of a fluid is a region, and drawn out.
+void
+stretch()
+{
+  auto options    = box<2>(16);
+  options.gravity = dealii::Tensor<1, 2>();
+  options.regions = {{"oil", 800, 0.1}};
+  Fluid<2> fluid("water", options, comm);
+  fill<2>(
+    fluid,
+    {0.3, 0.3},
+    {0.7, 0.7},
+    {{6, 6}},
+    0.,
+    [](const auto &x) { return dealii::Point<2>(3 * (x[0] - 0.5), -3 * (x[1] - 0.5)); },
+    [](const auto &) { return 1u; });
+  advance(fluid, 20, 0.01);
+  const double share = fluid.region_summaries()[0].volume / fluid.summary().volume;
+  deallog << "what is drawn out gets points: " << (fluid.counts.inserted > 0)
+          << ", and stays what it is: " << (std::fabs(share - 1) < 1e-12) << std::endl;
+}
+
 /// A light stone is thrown into water.
 template <int dim>
 void
@@ -241,6 +264,7 @@ main(int argc, char **argv)
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   mpi_initlog();
   test<2>();
+  stretch();
   channel();
   test<3>();
 }

@@ -226,8 +226,14 @@ private:
   void find_inside(const std::vector<dealii::Point<dim>> &x, std::vector<unsigned char> &taken_out);
   void find_flattened(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
   void find_encroaching(const std::vector<dealii::Point<dim>> &x, std::vector<double> &marks) const;
-  /// By place, the same on all ranks: whether a point there would end an element of a region.
-  std::vector<unsigned char> find_intruders(const std::vector<dealii::Point<dim>> &places,
+  /// A point that is about to be put in.
+  struct NewPoint
+  {
+    dealii::Point<dim> position;
+    unsigned char      region = 0;
+  };
+  /// By point, the same on all ranks as these are: whether it would end an element of a region.
+  std::vector<unsigned char> find_intruders(const std::vector<NewPoint>           &new_points,
                                             const std::vector<dealii::Point<dim>> &x) const;
   void                       find_strays(std::vector<unsigned char> &taken_out);
   void                       find_corner_twins(std::vector<unsigned char> &taken_out);

@@ -157,15 +157,14 @@ read_regions(const Parameters &body, meshless::FluidOptions<dim> &options)
                      "a meshless fluid has too many regions",
                      std::to_string(options.regions.size()),
                      "give at most 200");
-  const bool is_viscous = std::any_of(options.regions.begin(),
-                                      options.regions.end(),
-                                      [](const auto &region) { return region.viscosity > 0; });
-  if (is_viscous && body.choice("Structures") == "slip")
+  // Points on structures are of no region.
+  if (!options.regions.empty() && body.choice("Structures") == "slip")
     throw body.error("Structures",
-                     "a fluid with viscous regions does not slip on structures",
-                     "Structures = slip, and a region with a viscosity",
-                     "set Structures to auto or stick, or the regions' Viscosity to 0");
-  options.slips_on_structures &= !is_viscous;
+                     "a fluid with regions does not slip on structures",
+                     "Structures = slip, and " + std::to_string(options.regions.size()) +
+                       " regions",
+                     "set Structures to auto or stick, or take the regions out");
+  options.slips_on_structures &= options.regions.empty();
 }
 
 template <int dim>

@@ -140,8 +140,6 @@ MeshlessSystem<dim>::MeshlessSystem(const Parameters             &root,
       if (body.choice("Kind") != "meshless fluid")
         continue;
       auto options = meshless::FluidOptions<dim>::read(body, gravity);
-      if (body.choice("Structures") == "auto" && !structure.solids.empty())
-        options.slips_on_structures = false;
       set_box(root, octree, options);
       read_regions(body, options);
       set_periods(body, !structure.empty(), options);

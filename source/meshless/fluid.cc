@@ -123,6 +123,7 @@ Fluid<dim>::remesh(const bool may_balance)
   fill_cloud();
   if (may_balance)
     balance();
+  hold_wet_ridges();
   add_structure_points();
   halo.rebuild(points, options.tessellation.halo_width(options.spacing), period);
   halo.update(velocity);

@@ -156,8 +156,9 @@ FluidOptions<dim>::declare(Declaration &body)
     {"auto", "slip", "stick"},
     "What the surfaces of structures do to the fluid. slip: it moves along them freely, and "
     "their facets may be larger than the spacing; stick: it moves as they do, and facets "
-    "must be about as large as the spacing; auto: slip in the plane where Viscosity is 0 and no "
-    "structure deforms. Sheets, and edges and corners of bodies, always stick.");
+    "must be about as large as the spacing; auto: slip where Viscosity is 0 and there are no "
+    "Regions. Sheets always stick, and so do edges and corners of bodies that are wet on all "
+    "sides.");
   declare_refill(body);
   declare_solver(body);
 }
@@ -189,13 +190,7 @@ FluidOptions<dim>::read(const Parameters &body, const dealii::Tensor<1, dim> &gr
   o.volume_relaxation            = body.quantity("Volume relaxation");
   o.gravity                      = gravity;
   const std::string structures   = body.choice("Structures");
-  o.slips_on_structures =
-    structures == "slip" || (structures == "auto" && o.viscosity == 0 && dim == 2);
-  if (o.slips_on_structures && dim == 3)
-    throw body.error("Structures",
-                     "in space the fluid does not slip on structures",
-                     "Structures = slip in three dimensions",
-                     "set Structures to auto or stick");
+  o.slips_on_structures = structures == "slip" || (structures == "auto" && o.viscosity == 0);
   if (o.slips_on_structures && o.viscosity > 0)
     throw body.error("Structures",
                      "a viscous fluid does not slip on structures",

@@ -199,22 +199,26 @@ Fluid<dim>::find_long_edges(const std::vector<dealii::Point<dim>> &x) const
       inside[e] |= !free_surface[mesh.node[i]];
   std::map<unsigned int, LongEdge> by_element;
   for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int e) {
-    const double h = 0.5 * (points.spacing[i] + points.spacing[j]);
-    if (is_structure(i) && is_structure(j))
+    const double h     = 0.5 * (points.spacing[i] + points.spacing[j]);
+    const bool   along = is_along_structure(i, j, x);
+    if (is_on_structure(i) && is_on_structure(j) && !along)
       return;
     // Towards a corner above the water the surface would climb.
     if ((is_structure(i) && at_surface[i] && is_sliding(j)) ||
         (is_structure(j) && at_surface[j] && is_sliding(i)))
       return;
     // In space a diagonal of a region's cubes at the surface is no edge of the outline.
-    const bool in_region   = region[i] > 0 && region[i] == region[j];
-    const bool on_boundary = (walls[i] & walls[j]) ||
-                             (free_surface[i] && free_surface[j] && !in_region) ||
-                             is_along_structure(i, j, x);
+    const bool in_region = region[i] > 0 && region[i] == region[j];
+    const bool on_boundary =
+      (walls[i] & walls[j]) || (free_surface[i] && free_surface[j] && !in_region) || along;
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
     const double length_square = x[i].distance_square(x[j]);
     if (!inside[e] || length_square < std::pow(limit * h, 2))
+      return;
+    // Across an edge of a body.
+    if ((is_on_structure(i) || is_on_structure(j)) && !along &&
+        structures.contains(x[i] + 0.5 * (x[j] - x[i])))
       return;
     const bool in_order = points.id[i] < points.id[j];
     LongEdge   edge{length_square,

@@ -13,7 +13,28 @@ constexpr double overhang = 0.5;
 /// Shares of the spacing: an edge between points on a surface is along it if its middle is so near,
 /// and points slide no nearer to a held node.
 constexpr double along = 0.25, nearest_to_node = 0.25;
+/// Cosine of the angle of normals by which a point has slid over an edge.
+constexpr double over_edge = 0.866;
 } // namespace
+
+/// Which edges of structures are points of the fluid in the next step; where they meet the box they
+/// are in any case.
+template <int dim>
+void
+Fluid<dim>::hold_wet_ridges()
+{
+  if (!structures.slip || structures.empty())
+    return;
+  std::vector<typename StructureSurface<dim>::Place> sliding;
+  typename StructureSurface<dim>::Place              place;
+  for (std::size_t i = 0; i < n_cloud; ++i)
+    if (is_sliding(i) && structures.surface.find_nearest(points.position[i], place))
+      sliding.push_back(place);
+  std::vector<unsigned char> at_box;
+  for (const auto &node : structures.surface.nodes)
+    at_box.push_back(faces_at(node.position) != 0);
+  structures.hold_wet_ridges(sliding, points.position, at_box, comm);
+}
 
 /// The points on structures, and what carries them there, in places of the start of the step.
 template <int dim>
@@ -66,6 +87,14 @@ Fluid<dim>::slide(const typename StructureWalls<dim>::Pushes &pushes)
     }
 }
 
+/// Has a point that slid where the normal was this slid over an edge?
+template <int dim>
+bool
+Fluid<dim>::has_left(const Vector &normal, const typename StructureSurface<dim>::Place &place) const
+{
+  return place.height > -1e-6 * options.spacing && normal * place.normal < over_edge;
+}
+
 /// To the place of a surface, with its velocity across.
 template <int dim>
 void
@@ -93,8 +122,8 @@ Fluid<dim>::put_on_structure(const std::size_t                            row,
 }
 
 /**
- * Structures have moved: points on them are put on their surfaces again, and those that have come
- * to a structure are on it from now on.
+ * Structures have moved: points on them are put on their surfaces again but for those that have
+ * slid over an edge; those that have come to a structure are on it from now on.
  */
 template <int dim>
 void
@@ -102,6 +131,10 @@ Fluid<dim>::stay_on_structures()
 {
   if (!structures.slip || structures.empty())
     return;
+  std::vector<Vector> normal(n_cloud);
+  for (std::size_t k = 0; k < carried.size(); ++k)
+    if (carried[k].row < n_cloud)
+      normal[carried[k].row] = carried_normal[k];
   typename StructureSurface<dim>::Place place;
   for (std::size_t i = 0; i < n_cloud; ++i)
     {
@@ -114,7 +147,8 @@ Fluid<dim>::stay_on_structures()
         }
       const bool was_sliding      = columns[Layout::sliding][i] > 0;
       columns[Layout::sliding][i] = 0;
-      if (!structures.surface.find_nearest(x, place) || (!was_sliding && place.height > 0))
+      if (!structures.surface.find_nearest(x, place) || (!was_sliding && place.height > 0) ||
+          (was_sliding && has_left(normal[i], place)))
         continue;
       put_on_structure(i, place);
       for (unsigned int d = 0; d < dim; ++d)
@@ -142,9 +176,9 @@ Fluid<dim>::find_slid_together(std::vector<unsigned char> &taken_out)
       dealii::Point<dim> x;
       for (unsigned int d = 0; d < dim; ++d)
         x[d] = columns[Layout::position + d][i];
-      for (const auto &node : structures.surface.nodes)
-        if (node.is_sharp &&
-            x.distance_square(node.position) < std::pow(nearest_to_node * points.spacing[i], 2))
+      for (unsigned int k = 0; k < structures.surface.nodes.size(); ++k)
+        if (structures.is_held(k) && x.distance_square(structures.surface.nodes[k].position) <
+                                       std::pow(nearest_to_node * points.spacing[i], 2))
           {
             taken_out[i] = 1;
             ++n;
@@ -162,8 +196,7 @@ Fluid<dim>::is_along_structure(const unsigned int                     i,
                                const std::vector<dealii::Point<dim>> &x) const
 {
   typename StructureSurface<dim>::Place place;
-  return (is_sliding(i) || is_structure(i)) && (is_sliding(j) || is_structure(j)) &&
-         (is_sliding(i) || is_sliding(j)) &&
+  return is_on_structure(i) && is_on_structure(j) && (is_sliding(i) || is_sliding(j)) &&
          structures.surface.find_nearest(x[i] + 0.5 * (x[j] - x[i]), place) &&
          std::fabs(place.height) < along * points.spacing[i];
 }

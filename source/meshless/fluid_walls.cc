@@ -164,9 +164,15 @@ Fluid<dim>::find_inside(const std::vector<dealii::Point<dim>> &x,
 {
   if (structures.empty())
     return;
-  std::uint64_t n = 0;
+  std::uint64_t                         n = 0;
+  typename StructureSurface<dim>::Place place;
+  // On the surface angles do not tell the side.
+  const auto is_inside = [&](const dealii::Point<dim> &p) {
+    return structures.contains(p) &&
+           !(structures.surface.find_nearest(p, place) && place.height > -1e-6 * options.spacing);
+  };
   for (std::size_t i = 0; i < n_cloud; ++i)
-    if (!taken_out[i] && columns[Layout::sliding][i] == 0 && structures.contains(x[i]))
+    if (!taken_out[i] && columns[Layout::sliding][i] == 0 && is_inside(x[i]))
       {
         taken_out[i] = 1;
         ++n;

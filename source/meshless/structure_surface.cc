@@ -13,6 +13,8 @@ namespace
 {
 /// Facets whose normals differ by more than 30 degrees meet in an edge.
 constexpr double least_cosine = 0.866;
+/// Sine of the angle by which they may lean towards each other in a ridge.
+constexpr double hollow = 0.05;
 
 /// Unit normal, outward.
 dealii::Tensor<1, 2>
@@ -148,13 +150,54 @@ StructureSurface<dim>::find_sharp_nodes()
   for (unsigned int f = 0; f < facets.size(); ++f)
     for (const unsigned int node : facets[f])
       around[node].push_back(f);
+  ridges.clear();
   for (unsigned int i = 0; i < nodes.size(); ++i)
     {
       nodes[i].is_sharp = around[i].empty();
       for (const unsigned int f : around[i])
         for (const unsigned int g : around[i])
           nodes[i].is_sharp |= normals[f] * normals[g] < least_cosine;
+      if (nodes[i].is_sharp)
+        find_ridges(i, around[i]);
     }
+}
+
+template <int dim>
+void
+StructureSurface<dim>::find_ridges(const unsigned int node, const std::vector<unsigned int> &around)
+{
+  for (const unsigned int f : around)
+    for (const unsigned int g : around)
+      if (is_hollow(node, f, g))
+        return;
+  for (const unsigned int f : around)
+    for (const unsigned int g : around)
+      {
+        if (f >= g || normals[f] * normals[g] >= least_cosine)
+          continue;
+        if constexpr (dim == 2)
+          ridges.push_back({node, Vector(), {f, g}});
+        else
+          for (const unsigned int end : facets[f])
+            if (end != node && std::count(facets[g].begin(), facets[g].end(), end) > 0)
+              {
+                const Vector way = nodes[end].position - nodes[node].position;
+                ridges.push_back({node, way / way.norm(), {f, g}});
+              }
+      }
+}
+
+/// Does facet g, seen from their common node, rise above facet f?
+template <int dim>
+bool
+StructureSurface<dim>::is_hollow(const unsigned int node,
+                                 const unsigned int f,
+                                 const unsigned int g) const
+{
+  Vector way;
+  for (const auto &x : vertices(facets[g]))
+    way += x - nodes[node].position;
+  return normals[f] * way > hollow * way.norm();
 }
 
 template <int dim>

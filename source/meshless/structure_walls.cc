@@ -10,6 +10,12 @@ namespace coracle::meshless
 {
 namespace
 {
+/// So far around an edge the fluid must be on its facets, and so far from it its points, over the
+/// spacing.
+constexpr double wet_reach = 2, nearest = 0.25;
+/// Cosine of the angle within which normals are those of one facet.
+constexpr double same_facet = 0.866;
+
 template <int dim>
 dealii::Tensor<1, 3>
 in_space(const dealii::Tensor<1, dim> &v)
@@ -47,21 +53,10 @@ StructureWalls<dim>::update(const contact::Surface<dim>                   &publi
 {
   rigids = rigid_unknowns;
   surface.update(published, rigid_of_node, reach, comm);
-  nodes.clear();
   deforms = false;
   for (const auto &node : surface.nodes)
     deforms |= node.rigid < 0;
-  for (const int n : surface.number)
-    if (n >= 0 && (!slip || surface.nodes[n].is_sharp))
-      {
-        const auto &node = surface.nodes[n];
-        nodes.push_back({node.position,
-                         node.velocity,
-                         node.inverse_mass,
-                         node.key,
-                         node.rigid,
-                         static_cast<unsigned int>(n)});
-      }
+  list_nodes();
   for (unsigned int d = 0; d < dim; ++d)
     {
       low[d]  = std::numeric_limits<double>::max();
@@ -73,6 +68,56 @@ StructureWalls<dim>::update(const contact::Surface<dim>                   &publi
             high[d] = std::max(high[d], x[d]);
           }
     }
+}
+
+template <int dim>
+void
+StructureWalls<dim>::list_nodes()
+{
+  nodes.clear();
+  for (const int n : surface.number)
+    if (n >= 0 && is_held(n))
+      {
+        const auto &node = surface.nodes[n];
+        nodes.push_back({node.position,
+                         node.velocity,
+                         node.inverse_mass,
+                         node.key,
+                         node.rigid,
+                         static_cast<unsigned int>(n)});
+      }
+}
+
+template <int dim>
+void
+StructureWalls<dim>::hold_wet_ridges(
+  const std::vector<typename StructureSurface<dim>::Place> &sliding,
+  const std::vector<dealii::Point<dim>>                    &taken,
+  const std::vector<unsigned char>                         &fixed,
+  const MPI_Comm                                            comm)
+{
+  const auto &ridges = surface.ridges;
+  // Of each ridge whether a point slides near on each of its facets, as far along the edge as its
+  // end or farther, and whether there is a point beside that.
+  std::vector<unsigned char> found(3 * ridges.size());
+  for (std::size_t r = 0; r < ridges.size(); ++r)
+    {
+      const dealii::Point<dim> x = surface.nodes[ridges[r].node].position;
+      for (const auto &place : sliding)
+        for (unsigned int side = 0; side < 2; ++side)
+          found[3 * r + side] |=
+            place.position.distance_square(x) < std::pow(wet_reach * reach, 2) &&
+            (place.position - x) * ridges[r].along > -nearest * reach &&
+            place.normal * surface.normals[ridges[r].facets[side]] > same_facet;
+      for (const auto &other : taken)
+        found[3 * r + 2] |= other.distance_square(x) < std::pow(nearest * reach, 2);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, found.data(), found.size(), MPI_UNSIGNED_CHAR, MPI_BOR, comm);
+  dry.clear();
+  for (std::size_t r = 0; r < ridges.size(); ++r)
+    if (!fixed[ridges[r].node] && (!found[3 * r] || !found[3 * r + 1] || found[3 * r + 2]))
+      dry.insert(surface.nodes[ridges[r].node].key);
+  list_nodes();
 }
 
 template <int dim>

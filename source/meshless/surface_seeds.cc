@@ -8,8 +8,9 @@ namespace coracle::meshless
 {
 namespace
 {
-/// Least distance between two, over the spacing: no pair is taken for crowded.
-constexpr double least_distance = 0.6;
+/// Least distance between two, over the spacing: no pair is taken for crowded; and that of those at
+/// the waterline from nodes: where water reaches over an edge by less, it is as if it did not.
+constexpr double least_distance = 0.6, least_wet = 0.3;
 
 template <int dim>
 class Seeder
@@ -25,15 +26,15 @@ public:
   {
     for (unsigned int f = 0; f < surface.facets.size(); ++f)
       look_at(f);
+    std::vector<dealii::Point<dim>> nodes, taken;
     for (const auto &node : surface.nodes)
       if (node.is_sharp)
-        taken.push_back(node.position);
+        nodes.push_back(node.position);
     std::vector<SurfaceSeed<dim>> result;
     for (const auto *list : {&at_waterline, &in_facets})
       for (const auto &seed : *list)
-        if (std::none_of(taken.begin(), taken.end(), [&](const auto &x) {
-              return x.distance_square(seed.position) < std::pow(least_distance * spacing, 2);
-            }))
+        if (!is_near(taken, seed, least_distance) &&
+            !is_near(nodes, seed, list == &at_waterline ? least_wet : least_distance))
           {
             taken.push_back(seed.position);
             result.push_back(seed);
@@ -42,6 +43,15 @@ public:
   }
 
 private:
+  bool is_near(const std::vector<dealii::Point<dim>> &points,
+               const SurfaceSeed<dim>                &seed,
+               const double                           share) const
+  {
+    return std::any_of(points.begin(), points.end(), [&](const auto &x) {
+      return x.distance_square(seed.position) < std::pow(share * spacing, 2);
+    });
+  }
+
   using Weights = std::array<double, dim>;
 
   SurfaceSeed<dim> place(const unsigned int f, const Weights &weights) const
@@ -132,7 +142,6 @@ private:
   const double                                         spacing;
   const std::function<bool(const SurfaceSeed<dim> &)> &is_wet;
   std::vector<SurfaceSeed<dim>>                        at_waterline, in_facets;
-  std::vector<dealii::Point<dim>>                      taken;
 };
 } // namespace
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // On any number of ranks the elements, boundary facets and surface points are those of all points
-// together, to the last bit: points shared out in slabs, at random, all to one rank, and by Zoltan,
-// which balances weights and moves columns.
+// together, to the last bit, and the pressure's matrix to round-off: points shared out in slabs, at
+// random, all to one rank, and by Zoltan, which balances weights and moves columns.
 #include <coracle/meshless/halo.h>
 #include <coracle/meshless/partition.h>
+#include <coracle/meshless/scalar_system.h>
 
 #include "clouds.h"
 
@@ -94,6 +95,49 @@ boundary_of_all_ranks(const PointCloud<dim> &cloud, const Tessellation<dim> &t)
   return result;
 }
 
+/// Entries of the pressure's matrix by the ids of their points, on all ranks of a communicator.
+template <int dim>
+std::map<std::pair<std::uint64_t, std::uint64_t>, double>
+matrix_entries(const PointCloud<dim>   &cloud,
+               const Tessellation<dim> &t,
+               const Halo              &halo,
+               const MPI_Comm           ranks)
+{
+  ElementRules<dim> rules;
+  rules.reinit(cloud, t);
+  ScalarSystem<dim> system(ranks);
+  system.reinit(t, halo);
+  system.assemble(t, rules, {}, 1., std::vector<unsigned char>(cloud.size(), 0));
+  // Unknowns are numbered by ranks, own points in their order.
+  const std::vector<std::uint64_t> mine(cloud.id.begin(), cloud.id.begin() + cloud.n_own);
+  std::vector<std::uint64_t>       id;
+  for (const auto &some : dealii::Utilities::MPI::all_gather(ranks, mine))
+    id.insert(id.end(), some.begin(), some.end());
+  std::vector<std::array<double, 3>> entries;
+  const auto                        &matrix = system.get_matrix();
+  for (auto row = matrix.local_range().first; row < matrix.local_range().second; ++row)
+    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+      entries.push_back({double(id[row]), double(id[entry->column()]), entry->value()});
+  std::map<std::pair<std::uint64_t, std::uint64_t>, double> result;
+  for (const auto &some : dealii::Utilities::MPI::all_gather(ranks, entries))
+    for (const auto &[row, column, value] : some)
+      result[{row, column}] = value;
+  return result;
+}
+
+/// The same places, and the same values to 1e-12 of the largest.
+template <typename Entries>
+bool
+are_equal(const Entries &a, const Entries &b)
+{
+  double largest = 0;
+  for (const auto &entry : a)
+    largest = std::max(largest, std::fabs(entry.second));
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [&](auto &x, auto &y) {
+           return x.first == y.first && std::fabs(x.second - y.second) < 1e-12 * largest;
+         });
+}
+
 template <int dim>
 void
 compare(const std::string         &name,
@@ -140,8 +184,14 @@ compare(const std::string         &name,
   unsigned int polytopes = 0;
   for (unsigned int e = 0; e < together.n_elements(); ++e)
     polytopes += !together.is_simplex(e);
+  Halo alone(MPI_COMM_SELF);
+  auto all = whole;
+  alone.rebuild(all, options.halo_width(0.1));
+  const bool same_matrix = are_equal(matrix_entries(all, together, alone, MPI_COMM_SELF),
+                                     matrix_entries(mine, apart, halo, comm));
   deallog << name << ' ' << dim << "-D: elements " << same << ", boundary " << same_rim
-          << ", columns " << (all_known && sums == whole.size() + copies) << ", merged some "
+          << ", matrix " << same_matrix << ", columns "
+          << (all_known && sums == whole.size() + copies) << ", merged some "
           << (polytopes > 0 && polytopes < together.n_elements()) << std::endl;
 }
 

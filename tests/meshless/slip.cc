@@ -2,7 +2,7 @@
 // Water at rest beside a wall that moves along itself, with facets of many spacings, stays at rest
 // with its exact pressure; a body under water at rest is pushed up by exactly the weight of the
 // water it displaces, rigid or by its nodes; water on a movable bottom falls as both masses
-// together do.
+// together do; water that flows along a body past its edge is not hindered there.
 #include <coracle/base/mpi.h>
 
 #include "tank.h"
@@ -264,6 +264,71 @@ movable_bottom(const bool rigid)
           << std::endl;
 }
 
+/// A block not quite a lattice, so that its elements are simplices, whose faces in space are those
+/// of the surface; but one point comes to be exactly on the edge.
+template <int dim>
+void
+fill_block(Fluid<dim> &fluid, const unsigned int n, const dealii::Tensor<1, dim> &velocity)
+{
+  const unsigned int n_points = std::pow(n, dim);
+  for (unsigned int id = mpi::rank(comm); id < n_points; id += mpi::n_ranks(comm))
+    {
+      std::mt19937_64                        engine(id);
+      std::uniform_real_distribution<double> random(-0.1, 0.1);
+      dealii::Point<dim>                     x;
+      for (unsigned int d = 0, rest = id; d < dim; rest /= n, ++d)
+        {
+          const bool on_body = d == 0 && rest % n == 0, on_edge = id == n_points - n;
+          x[d] =
+            0.25 + (rest % n + (on_body || on_edge ? 0. : random(engine))) * fluid.options.spacing;
+        }
+      fluid.add_point(x, velocity, id);
+      fluid.columns[FluidLayout<dim>::sliding][fluid.n_fluid() - 1] = x[0] == 0.25;
+    }
+  fluid.remesh();
+}
+
+/// Without gravity: nothing but the edge could change the velocity.
+template <int dim>
+void
+past_the_edge()
+{
+  const unsigned int n       = dim == 2 ? 20 : 8;
+  auto               options = slipping<dim>(n);
+  options.gravity            = dealii::Tensor<1, dim>();
+  options.refill.enabled     = false;
+  Fluid<dim> fluid("water", options, comm);
+  auto       upper = all<dim>(2);
+  upper[0]         = 0.25;
+  upper[dim - 1]   = 0.6;
+  std::vector<unsigned int> parts(dim, 1);
+  if (dim == 3)
+    parts[1] = 3 * n; // nodes along the edge
+  Body<dim> body(all<dim>(-1), upper, parts, true);
+  body.show(fluid);
+  dealii::Tensor<1, dim> along;
+  along[dim - 1] = 1;
+  fill_block(fluid, n / 4 + 1, along);
+  const auto   n_points = mpi::sum(fluid.n_fluid(), comm);
+  TimingTable  timed;
+  const double dt   = 0.01;
+  double       push = 0, worst = 0;
+  for (unsigned int step = 0; step < 40; ++step)
+    {
+      body.show(fluid);
+      fluid.advance(step * dt, dt, timed);
+      push = std::max(push, fluid.rigid_impulses[0].impulse.norm() / dt);
+      fluid.refill();
+      fluid.remesh();
+    }
+  for (std::size_t i = 0; i < fluid.n_fluid(); ++i)
+    worst = std::max(worst, (fluid.velocity[i] - along).norm());
+  deallog << "past the edge of a body: velocity kept to 1e-9 m/s: "
+          << (mpi::max(worst, comm) < 1e-9) << ", no force to 1e-9 N: " << (push < 1e-9)
+          << ", all points are left: " << (mpi::sum(fluid.n_fluid(), comm) == n_points)
+          << std::endl;
+}
+
 template <int dim>
 void
 test()
@@ -272,6 +337,7 @@ test()
   moving_wall<dim>();
   under_water<dim>(true);
   under_water<dim>(false);
+  past_the_edge<dim>();
   // In space bilinear faces of cubes beside triangles of the surface make this inexact.
   if (dim == 2)
     {

@@ -47,7 +47,8 @@ state_of(SolidBody<dim> &body)
     Block               block;
     const auto          bytes = store.get(0, "body body/" + name, block);
     std::vector<double> values(bytes.size() / sizeof(double));
-    std::memcpy(values.data(), bytes.data(), bytes.size());
+    if (!bytes.empty())
+      std::memcpy(values.data(), bytes.data(), bytes.size());
     return std::make_pair(block.n_rows, values);
   };
   const auto add = [&](const int kind, const auto &keys, const unsigned int n, const auto &found) {

@@ -204,14 +204,17 @@ private:
   void          book_step(const double dt);
   void          check_numbers();
   void          new_positions(std::vector<dealii::Point<dim>> &x) const;
+  void          hold_wet_ridges();
   void          add_structure_points();
   void          carry_points();
   unsigned char faces_at(const dealii::Point<dim> &x) const;
   bool is_structure(const std::size_t row) const { return points.kind[row] == PointKind::wall; }
   /// A point of the fluid on the surface of a structure.
   bool is_sliding(const std::size_t row) const { return points.kind[row] == PointKind::sliding; }
+  bool is_on_structure(const std::size_t row) const { return is_structure(row) || is_sliding(row); }
   bool stays_on_structure(const std::size_t row, const Vector &normal) const;
   void slide(const typename StructureWalls<dim>::Pushes &pushes);
+  bool has_left(const Vector &normal, const typename StructureSurface<dim>::Place &place) const;
   void stay_on_structures();
   void put_on_structure(const std::size_t row, const typename StructureSurface<dim>::Place &place);
   void find_slid_together(std::vector<unsigned char> &taken_out);

@@ -79,10 +79,12 @@ public:
                     const SolverOptions       &options,
                     const Addition            &addition = {});
 
+  using Matrix = dealii::TrilinosWrappers::SparseMatrix;
+
   std::uint64_t n_unknowns() const { return matrix.m(); }
+  const Matrix &get_matrix() const { return matrix; }
 
 private:
-  using Matrix = dealii::TrilinosWrappers::SparseMatrix;
   using Vector = dealii::TrilinosWrappers::MPI::Vector;
 
   bool is_direct(const SolverOptions &options) const

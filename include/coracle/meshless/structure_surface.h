@@ -42,6 +42,16 @@ public:
     double height;
   };
 
+  /// An end of a convex edge of a body, and the facets that meet there; in the plane an edge is a
+  /// node.
+  struct Ridge
+  {
+    unsigned int node;
+    /// Unit, along the edge to its other end; in the plane 0.
+    Vector                      along;
+    std::array<unsigned int, 2> facets;
+  };
+
   /**
    * Take over what is published now. Collective.
    * @param rigid_of_node by node of the surface, -1: deformable
@@ -65,6 +75,8 @@ public:
   std::vector<Simplex> facets;
   /// Unit, outward.
   std::vector<Vector> normals;
+  /// Of nodes where no edge is hollow.
+  std::vector<Ridge> ridges;
   /// By node of the published surface of this rank: its number here, or -1 if it is another rank's.
   std::vector<int> number;
 
@@ -76,6 +88,8 @@ private:
                     const MPI_Comm               comm);
   void gather_facets(const contact::Surface<dim> &surface, const MPI_Comm comm);
   void find_sharp_nodes();
+  void find_ridges(const unsigned int node, const std::vector<unsigned int> &around);
+  bool is_hollow(const unsigned int node, const unsigned int f, const unsigned int g) const;
   void sort_into_cells();
   Cell cell_of(const dealii::Point<dim> &x) const;
 

@@ -4,13 +4,15 @@
 #include <coracle/contact/rows.h>
 #include <coracle/meshless/structure_surface.h>
 
+#include <set>
+
 namespace coracle::meshless
 {
 /**
  * The surfaces of structures and rigid bodies as the fluid meets them. Held nodes are points of the
- * fluid that move with the body: all of them without slip; with it those of edges and corners, and
- * of sheets. Elsewhere points of the fluid slide on the surface. The fluid's pressure gives
- * impulses to the nodes that carry its points.
+ * fluid that move with the body: all of them without slip; with it those of edges and corners where
+ * the fluid is on all sides, and of sheets. Elsewhere points of the fluid slide on the surface. The
+ * fluid's pressure gives impulses to the nodes that carry its points.
  */
 template <int dim>
 class StructureWalls
@@ -63,6 +65,25 @@ public:
               const std::vector<contact::RigidUnknown<dim>> &rigid_unknowns,
               const MPI_Comm                                 comm);
 
+  /**
+   * From now on, of the nodes on ridges those are held where the fluid is near on all facets that
+   * meet there: where it leaves the body a held point would stop it.
+   * @param sliding places of this rank's points that slide
+   * @param taken   places of all its points: no node is held beside one
+   * @param fixed   by node of `surface`: held whatever comes
+   * Collective.
+   */
+  void hold_wet_ridges(const std::vector<typename StructureSurface<dim>::Place> &sliding,
+                       const std::vector<dealii::Point<dim>>                    &taken,
+                       const std::vector<unsigned char>                         &fixed,
+                       const MPI_Comm                                            comm);
+
+  /// Is a node of `surface` a point of the fluid?
+  bool is_held(const unsigned int node) const
+  {
+    return !slip || (surface.nodes[node].is_sharp && dry.count(surface.nodes[node].key) == 0);
+  }
+
   bool empty() const { return surface.facets.empty(); }
 
   /// Is the point inside a closed body, by the angle that the facets fill as seen from it?
@@ -101,9 +122,12 @@ private:
   /// Are there nodes of deformable bodies that carry several points?
   bool couples() const { return slip && deforms; }
 
+  void               list_nodes();
   dealii::Point<dim> place_of(const Carried &point) const;
 
-  bool               deforms = false;
-  dealii::Point<dim> low, high;
+  bool deforms = false;
+  /// Keys of nodes on ridges that are not held.
+  std::set<std::uint64_t> dry;
+  dealii::Point<dim>      low, high;
 };
 } // namespace coracle::meshless

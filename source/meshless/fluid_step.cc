@@ -167,13 +167,15 @@ Fluid<dim>::solve_pressure(const double dt, const unsigned int iteration, Timing
     swelling_volume = moved_volume;
   else
     FluidOperators<dim>(mesh, moved_rules, halo).lumped_volume(swelling_volume, outside_regions);
-  const double swelling =
+  double swelling =
     options.volume_relaxation > 0
       ? std::clamp(dt / options.volume_relaxation * (initial_volume / current_volume - 1.),
                    -1e-3,
                    1e-3) /
           dt
       : 0.;
+  if (dim == 3)
+    swelling -= mpi::sum(fitting_flow, comm) / current_volume;
   std::vector<double> surface(points.n_own);
   for (std::size_t i = 0; i < points.n_own; ++i)
     if (!no_pressure[i])

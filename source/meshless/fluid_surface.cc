@@ -31,17 +31,18 @@ Fluid<dim>::find_surface_areas()
         surface_area[node] += area / dim;
     }
   halo.sum_to_owners(surface_area);
-  if (dim == 3 && !options.regions.empty())
+  fitting_flow = 0;
+  if (dim == 3)
     fit_surface_areas();
   find_wall_areas();
   halo.update(surface_area);
 }
 
 /**
- * The same of regions' points in space: how the volume that the elements integrate over changes
- * with the point's place. A face of more than three nodes is no sum of triangles there, and with
- * the triangles' areas the pressure of a viscous body's surface would push the body as a whole.
- * Walls have their part along their own normals only.
+ * In space a face of more than three nodes is no sum of triangles, and with the triangles' areas
+ * the pressure would push a block of fluid that moves as a whole. So areas are those that the
+ * elements' functions have there; what flows through the triangles besides keeps the volume, as
+ * part of the swelling. Walls have their part along their own normals only.
  */
 template <int dim>
 void
@@ -61,8 +62,11 @@ Fluid<dim>::fit_surface_areas()
   halo.sum_to_owners(whole);
   for (std::size_t i = 0; i < n_cloud; ++i)
     for (unsigned int d = 0; d < dim; ++d)
-      if (region[i] > 0 && free_surface[i] && !(walls[i] >> (2 * d) & 3))
-        surface_area[i][d] = whole[i][d];
+      if (free_surface[i] && !is_sliding(i) && !(walls[i] >> (2 * d) & 3))
+        {
+          fitting_flow += (surface_area[i][d] - whole[i][d]) * moving[i][d];
+          surface_area[i][d] = whole[i][d];
+        }
 }
 
 /**

@@ -48,13 +48,53 @@ public:
     return cells.radius[c] <= limit && !cells.is_sliver[c];
   }
 
+  /// Have two cells one sphere?
+  bool are_one(const unsigned int a, const unsigned int b) const
+  {
+    return cells.center[a].distance(cells.center[b]) <=
+           options.merge_tolerance * std::min(cells.spacing[a], cells.spacing[b]);
+  }
+
+  /// Cells of one sphere that only slivers are between: the two prisms of a cube, say, and a flat
+  /// cell in the plane where they meet.
+  void unite_across(Sets &sets) const
+  {
+    std::vector<bool>         seen(cells.size(), false);
+    std::vector<unsigned int> open, beside;
+    for (unsigned int c = 0; c < cells.size(); ++c)
+      {
+        if (seen[c] || !is_between(c))
+          continue;
+        beside.clear();
+        open.assign(1, c);
+        seen[c] = true;
+        while (!open.empty())
+          {
+            const unsigned int sliver = open.back();
+            open.pop_back();
+            for (const unsigned int other : cells.neighbor[sliver])
+              if (other != cells.none && has_sphere(other))
+                beside.push_back(other);
+              else if (other != cells.none && !seen[other] && is_between(other))
+                {
+                  seen[other] = true;
+                  open.push_back(other);
+                }
+          }
+        for (std::size_t i = 0; i < beside.size(); ++i)
+          for (std::size_t k = 0; k < i; ++k)
+            if (are_one(beside[i], beside[k]))
+              sets.unite(beside[i], beside[k]);
+      }
+  }
+
   /// Given the elements of cells with a sphere, those of slivers.
   void join(std::vector<unsigned int> &element) const
   {
     // Of slivers, the cell whose sphere they are on.
     std::vector<unsigned int> found(cells.size(), cells.none), open;
     for (unsigned int c = 0; c < cells.size(); ++c)
-      if (cells.is_sliver[c] && radius_is_within(corners(c), limit))
+      if (is_between(c))
         open.push_back(c);
     // Slivers lie upon each other where more than four points are on a circle. In each round look
     // at what earlier rounds have found, so that the order of cells does not matter.
@@ -84,6 +124,12 @@ public:
   }
 
 private:
+  /// A sliver that may be part of an element.
+  bool is_between(const unsigned int c) const
+  {
+    return cells.is_sliver[c] && radius_is_within(corners(c), limit);
+  }
+
   std::array<dealii::Point<dim>, dim + 1> corners(const unsigned int c) const
   {
     std::array<dealii::Point<dim>, dim + 1> result;
@@ -146,9 +192,9 @@ merge_cells(const Cells<dim>          &cells,
     if (slivers.has_sphere(c))
       for (const unsigned int beyond : cells.neighbor[c])
         if (beyond != cells.none && beyond < c && slivers.has_sphere(beyond) &&
-            cells.center[c].distance(cells.center[beyond]) <=
-              options.merge_tolerance * std::min(cells.spacing[c], cells.spacing[beyond]))
+            slivers.are_one(c, beyond))
           sets.unite(c, beyond);
+  slivers.unite_across(sets);
   for (unsigned int c = 0; c < cells.size(); ++c)
     if (slivers.has_sphere(c))
       element[c] = sets.find(c);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Between points at random places, water at rest has its hydrostatic pressure to round-off; linear
 // fields have their exact gradient, divergence (between simplices) and no Laplacian; sloshing water
-// keeps its volume; a drop that is thrown keeps momentum and volume and falls as a stone does.
+// keeps its volume; a drop that is thrown keeps momentum and volume and falls as a stone does; a
+// block of squares or cubes falls as a whole, without pressure.
 #include <coracle/base/mpi.h>
 
 #include "tank.h"
@@ -177,6 +178,37 @@ drop()
 
 template <int dim>
 void
+block()
+{
+  const unsigned int n = dim == 2 ? 16 : 8;
+  Fluid<dim>         fluid("water", box<dim>(n), comm);
+  const auto         thrown = [](const dealii::Point<dim> &) {
+    dealii::Tensor<1, dim> v;
+    v[0] = 0.3;
+    return v;
+  };
+  fill<dim>(fluid,
+            corner<dim>(0.25, 0.25),
+            corner<dim>(0.75, 0.75),
+            intervals<dim>(n / 2, n / 2),
+            0.,
+            thrown);
+  advance(fluid, 10, 0.005);
+  dealii::Tensor<1, dim> exact;
+  exact[0]       = 0.3;
+  exact[dim - 1] = -10 * 0.05;
+  double worst = 0, largest = 0;
+  for (std::size_t i = 0; i < fluid.n_fluid(); ++i)
+    {
+      worst   = std::max(worst, (fluid.velocity[i] - exact).norm());
+      largest = std::max(largest, std::fabs(fluid.pressure[i]));
+    }
+  deallog << "a block falls as a whole to 1e-9 m/s: " << (mpi::max(worst, comm) < 1e-9)
+          << ", without pressure to 1e-6 Pa: " << (mpi::max(largest, comm) < 1e-6) << std::endl;
+}
+
+template <int dim>
+void
 test()
 {
   deallog.push(std::to_string(dim) + "d");
@@ -184,6 +216,7 @@ test()
   linear_fields<dim>();
   sloshing<dim>();
   drop<dim>();
+  block<dim>();
   deallog.pop();
 }
 

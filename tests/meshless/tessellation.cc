@@ -123,6 +123,9 @@ test(const unsigned int n)
     {
       auto other = shuffled(cloud, seed);
       rows("shuffled", other, n, 0.);
+      auto last_digit = other;
+      perturb(last_digit, 1e-16, seed);
+      rows("moved by their last digit", last_digit, n, 1e-16);
       perturb(other, 1e-13, seed);
       rows("moved by round-off", other, n, 1e-13);
       perturb(other, 1e-10, seed);

@@ -276,6 +276,8 @@ private:
   /// Facets of the free surface, and elements with a point of it, here.
   std::vector<typename Tessellation<dim>::Facet> surface_facets, wall_facets;
   std::vector<unsigned int>                      surface_elements;
+  /// What flows through this rank's triangles of the surface more than through its faces [m^3/s].
+  double fitting_flow = 0;
   /// a_i of own points and copies [m^(dim-1)].
   std::vector<Vector> surface_area, pushed;
   std::vector<double> surface_pressure, driven;

@@ -106,8 +106,9 @@ Fluid<dim>::fill_cloud()
       // and do not fill the room between with fluid that was not there.
       const double share = options.surface_alpha / options.tessellation.alpha;
       points.spacing[i] = columns[Layout::spacing][i] * (columns[Layout::free][i] > 0 ? share : 1.);
-      walls[i]          = columns[Layout::walls][i];
-      region[i]         = columns[Layout::region][i];
+      columns[Layout::was_free][i] = columns[Layout::free][i];
+      walls[i]                     = columns[Layout::walls][i];
+      region[i]                    = columns[Layout::region][i];
       if (columns[Layout::sliding][i] > 0)
         points.kind[i] = PointKind::sliding;
     }
@@ -310,6 +311,9 @@ Fluid<dim>::serialize(Archive &archive)
 {
   const Archive::Section section(archive, "body " + body_name);
   archive.rows("points", columns);
+  // The elements are found anew, as they were.
+  if (archive.loads())
+    std::copy_n(columns[Layout::was_free], columns.size(), columns[Layout::free]);
   archive.share("energy.kinetic", energy.kinetic);
   archive.share("energy.internal", energy.internal);
   archive.share("energy.damping", energy.damping);

@@ -7,6 +7,19 @@ import shutil
 from run_case import Test
 
 test = Test()
+
+
+def continues(result, case, values, name):
+    """From its first checkpoint, at step 20, the run goes on to the same statistics."""
+    whole = (result.directory / "statistics.csv").read_bytes()
+    for checkpoint in sorted((result.directory / "checkpoints").glob("step_*"))[1:]:
+        shutil.rmtree(checkpoint)
+    rest = test.run(case, values, options=("--restart",), directory=result.directory)
+    test.check(f"{name}: it was continued", "step 20," in rest.text)
+    test.check(f"{name}: continued, the statistics are the same",
+               (result.directory / "statistics.csv").read_bytes() == whole)
+
+
 CASE, COARSE = "falling_cube/falling_cube.prm", {"Bodies/water/Spacing": "40 mm", "Bodies/cube/Mesh/Subdivisions": 5}
 for density, draught in ((500, 0.1), (100, 0.02)):
     start = {**COARSE, "Bodies/cube/Density": density, "Bodies/cube/Free directions": "y", "End time": "1",
@@ -36,11 +49,14 @@ test.band("space: rise over the draught's height, in spacings", (max(heights) - 
 test.band("space: fall below it, in spacings", (min(heights) - 0.4) / 0.04, -1e-3, 1e-3)
 test.band("space: drift of the water's volume", max(map(abs, result["water.volume_drift"])), 0, 1e-5)
 test.band("space: solutions that did not converge", result["water.pressure.unconverged"][-1], 0, 0)
-result = test.run("falling_cube/space.prm", {"Output/Particle format": "none", "End time": "0.6"})
+deep = {"Output/Particle format": "none", "End time": "0.6", "Checkpoint/Interval in steps": 20,
+        "Checkpoint/Number kept": 100}
+result = test.run("falling_cube/space.prm", deep)
 test.check("space, fall: the verdict is OK", "verdict: OK" in result.text)
 test.band("space, fall: the cube dives below its draught", min(result["cube.centre.y [m]"]), 0.25, 0.32)
 test.band("space, fall: it comes up again", result["cube.velocity.y [m/s]"][-1], 0.1, 1)
 test.band("space, fall: drift of the water's volume", max(map(abs, result["water.volume_drift"])), 0, 0.02)
+continues(result, "falling_cube/space.prm", deep, "space, fall")
 
 # As fluid of a high viscosity it falls as the rigid body does to which water sticks, and keeps its size; on two ranks, and
 # after a restart, alike.
@@ -58,13 +74,7 @@ test.band("viscous: solutions that did not converge",
 across = test.run("falling_cube/viscous.prm", solid, ranks=2)
 test.agree("viscous: height on 1 and 2 ranks", viscous["water.cube.centre.y [m]"][-1],
            across["water.cube.centre.y [m]"][-1], 1e-7)
-whole = (viscous.directory / "statistics.csv").read_bytes()
-for checkpoint in sorted((viscous.directory / "checkpoints").glob("step_*"))[1:]:
-    shutil.rmtree(checkpoint)
-rest = test.run("falling_cube/viscous.prm", solid, options=("--restart",), directory=viscous.directory)
-test.check("viscous: it was continued", "step 20," in rest.text)
-test.check("viscous: continued, the statistics are the same",
-           (viscous.directory / "statistics.csv").read_bytes() == whole)
+continues(viscous, "falling_cube/viscous.prm", solid, "viscous")
 
 deep = test.run("falling_cube/viscous_space.prm", {"Output/Particle format": "none", "End time": "0.35"})
 test.check("viscous in space: the verdict is OK", "verdict: OK" in deep.text)

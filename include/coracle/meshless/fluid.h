@@ -17,14 +17,15 @@ namespace coracle::meshless
 {
 /// Columns of a point's state between steps; all doubles, so that rows migrate and restart as they
 /// are. Ids are whole numbers below 2^53; walls are a sum of 2^face over the faces it slides on;
-/// free is 1 at the free surface and in drops; sliding is 1 on the surface of a structure; region
-/// is that of FluidOptions, and stays.
+/// free is 1 at the free surface and in drops, was_free what it was when the elements were found;
+/// sliding is 1 on the surface of a structure; region is that of FluidOptions, and stays.
 template <int dim>
 struct FluidLayout
 {
   static constexpr int position = 0, velocity = dim, pressure = 2 * dim, spacing = 2 * dim + 1,
                        id = 2 * dim + 2, walls = 2 * dim + 3, free = 2 * dim + 4,
-                       sliding = 2 * dim + 5, region = 2 * dim + 6, n_columns = 2 * dim + 7;
+                       sliding = 2 * dim + 5, region = 2 * dim + 6, was_free = 2 * dim + 7,
+                       n_columns = 2 * dim + 8;
 };
 
 /**

@@ -197,10 +197,16 @@ Fluid<dim>::find_long_edges(const std::vector<dealii::Point<dim>> &x) const
   for (unsigned int e = 0; e < mesh.n_elements(); ++e)
     for (unsigned int i = mesh.first_node[e]; i < mesh.first_node[e + 1]; ++i)
       inside[e] |= !free_surface[mesh.node[i]];
+  const double shortest =
+    std::min(options.refill.longest_boundary_edge, options.refill.longest_edge);
   std::map<unsigned int, LongEdge> by_element;
   for_each_pair(mesh, [&](const unsigned int i, const unsigned int j, const unsigned int e) {
-    const double h     = 0.5 * (points.spacing[i] + points.spacing[j]);
-    const bool   along = is_along_structure(i, j, x);
+    const double h             = 0.5 * (points.spacing[i] + points.spacing[j]);
+    const double length_square = x[i].distance_square(x[j]);
+    // By far the most: nothing is looked up for them.
+    if (!inside[e] || length_square < std::pow(shortest * h, 2))
+      return;
+    const bool along = is_along_structure(i, j, x);
     if (is_on_structure(i) && is_on_structure(j) && !along)
       return;
     // Towards a corner above the water the surface would climb.
@@ -213,8 +219,7 @@ Fluid<dim>::find_long_edges(const std::vector<dealii::Point<dim>> &x) const
       (walls[i] & walls[j]) || (free_surface[i] && free_surface[j] && !in_region) || along;
     const double limit =
       on_boundary ? options.refill.longest_boundary_edge : options.refill.longest_edge;
-    const double length_square = x[i].distance_square(x[j]);
-    if (!inside[e] || length_square < std::pow(limit * h, 2))
+    if (length_square < std::pow(limit * h, 2))
       return;
     // Across an edge of a body.
     if ((is_on_structure(i) || is_on_structure(j)) && !along &&

@@ -26,14 +26,19 @@ Fluid<dim>::hold_wet_ridges()
   if (!structures.slip || structures.empty())
     return;
   std::vector<typename StructureSurface<dim>::Place> sliding;
+  std::vector<dealii::Point<dim>>                    near;
   typename StructureSurface<dim>::Place              place;
   for (std::size_t i = 0; i < n_cloud; ++i)
-    if (is_sliding(i) && structures.surface.find_nearest(points.position[i], place))
-      sliding.push_back(place);
+    if (structures.surface.find_nearest(points.position[i], place))
+      {
+        near.push_back(points.position[i]);
+        if (is_sliding(i))
+          sliding.push_back(place);
+      }
   std::vector<unsigned char> at_box;
   for (const auto &node : structures.surface.nodes)
     at_box.push_back(faces_at(node.position) != 0);
-  structures.hold_wet_ridges(sliding, points.position, at_box, comm);
+  structures.hold_wet_ridges(sliding, near, at_box, comm);
 }
 
 /// The points on structures, and what carries them there, in places of the start of the step.

@@ -10,33 +10,6 @@
 using namespace tank;
 
 template <int dim>
-dealii::Point<dim>
-corner(const double x, const double height)
-{
-  dealii::Point<dim> p;
-  for (unsigned int d = 0; d < dim; ++d)
-    p[d] = d + 1 == dim ? height : x;
-  return p;
-}
-
-template <int dim>
-std::array<unsigned int, dim>
-intervals(const unsigned int n, const unsigned int up)
-{
-  std::array<unsigned int, dim> result;
-  result.fill(n);
-  result[dim - 1] = up;
-  return result;
-}
-
-template <int dim>
-dealii::Tensor<1, dim>
-rest(const dealii::Point<dim> &)
-{
-  return {};
-}
-
-template <int dim>
 void
 hydrostatic()
 {

@@ -10,34 +10,6 @@
 
 using namespace tank;
 
-template <int dim>
-dealii::Tensor<1, dim>
-rest(const dealii::Point<dim> &)
-{
-  return {};
-}
-
-template <int dim>
-dealii::Point<dim>
-corner(const double side, const double height)
-{
-  dealii::Point<dim> result;
-  for (unsigned int d = 0; d + 1 < dim; ++d)
-    result[d] = side;
-  result[dim - 1] = height;
-  return result;
-}
-
-template <int dim>
-std::array<unsigned int, dim>
-intervals(const unsigned int across, const unsigned int up)
-{
-  std::array<unsigned int, dim> result;
-  result.fill(across);
-  result[dim - 1] = up;
-  return result;
-}
-
 /// Mud, water and oil above each other.
 template <int dim>
 void

@@ -50,6 +50,33 @@ on_rim(const Regions<dim> &region, const dealii::Point<dim> &x, const double spa
   return false;
 }
 
+template <int dim>
+dealii::Point<dim>
+corner(const double x, const double height)
+{
+  dealii::Point<dim> p;
+  for (unsigned int d = 0; d < dim; ++d)
+    p[d] = d + 1 == dim ? height : x;
+  return p;
+}
+
+template <int dim>
+std::array<unsigned int, dim>
+intervals(const unsigned int n, const unsigned int up)
+{
+  std::array<unsigned int, dim> result;
+  result.fill(n);
+  result[dim - 1] = up;
+  return result;
+}
+
+template <int dim>
+dealii::Tensor<1, dim>
+rest(const dealii::Point<dim> &)
+{
+  return {};
+}
+
 /**
  * Points of a lattice from `lower` to `upper`, numbers of intervals `n`, those inside, and not on
  * the rim of a region, displaced at random by a share of the spacing; each rank takes every so

@@ -69,7 +69,7 @@ public:
    * From now on, of the nodes on ridges those are held where the fluid is near on all facets that
    * meet there: where it leaves the body a held point would stop it.
    * @param sliding places of this rank's points that slide
-   * @param taken   places of all its points: no node is held beside one
+   * @param taken   places of its points within `reach`: no node is held beside one
    * @param fixed   by node of `surface`: held whatever comes
    * Collective.
    */
